@@ -199,6 +199,7 @@ Config::Config(const std::string& text, const fs::path& name) : name_(name), tre
 
 bool Config::has(const std::string& key) const { return tree_->at(key) != nullptr; }
 bool Config::is_array(const std::string& key) const { return has(key) && tree_->at(key)->is_array(); }
+bool Config::is_table(const std::string& key) const { return has(key) && tree_->at(key)->is_table(); }
 bool Config::is_text(const std::string& key) const { return has(key) && tree_->at(key)->is_string(); }
 
 std::vector<std::string> Config::keys(const std::string& table) const {

@@ -58,6 +58,8 @@ class Config {
   [[nodiscard]] bool has(const std::string& key) const;
   /// Returns whether the key's value is an array.
   [[nodiscard]] bool is_array(const std::string& key) const;
+  /// Returns whether the key's value is a table.
+  [[nodiscard]] bool is_table(const std::string& key) const;
   /// Returns whether the key's value is a text.
   [[nodiscard]] bool is_text(const std::string& key) const;
   /// Returns the keys of a table in alphabetical order; empty if there is no such table.

@@ -22,7 +22,10 @@ void check_bus(const PlantModel& model, const std::string& where, Problems& prob
                  "write bus and id under [plant], or give --bus and --id");
 }
 
-std::string comments(const std::vector<std::string>& head, const std::string& mark) {
+/// Returns the head and the nameplate as comments.
+std::string comments(const PlantModel& model, std::vector<std::string> head, const std::string& mark) {
+  for (const NameplateLine& line : nameplate_lines(model.nameplate, model.plant))
+    if (!line.missing) head.push_back(line.label + ": " + line.text());
   std::string text;
   for (std::string line : head) {
     std::ranges::replace_if(
@@ -37,7 +40,8 @@ std::string comments(const std::vector<std::string>& head, const std::string& ma
 std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
                      Problems& problems) {
   check_bus(model, where, problems);
-  return comments(head, "// ") + sim::grid::unit_dyr(model.plant, model.bus, model.id, where, problems);
+  return comments(model, head, "// ") +
+         sim::grid::unit_dyr(model.plant, model.bus, model.id, where, problems);
 }
 
 std::string dyd_text(const PlantModel& model, const std::vector<std::string>& head,
@@ -46,7 +50,8 @@ std::string dyd_text(const PlantModel& model, const std::vector<std::string>& he
   if (!(place.kv > 0))
     problems.add("no nominal voltage", where, "PSLF requires that of the unit's bus",
                  "write base_kv under [record], or give --kv");
-  return comments(head, "# ") + sim::grid::unit_dyd(model.plant, model.bus, model.id, place, where, problems);
+  return comments(model, head, "# ") +
+         sim::grid::unit_dyd(model.plant, model.bus, model.id, place, where, problems);
 }
 
 std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model) {

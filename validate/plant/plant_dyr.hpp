@@ -8,9 +8,9 @@
 
 namespace swingbank::validate::plant {
 
-/// Returns the .dyr records of the model's machine and controls; `head` becomes comments, and `where` names
-/// the model in messages. A missing bus number, a user-defined model and a value without a column become
-/// problems.
+/// Returns the .dyr records of the model's machine and controls; `head` and nameplate become comments,
+/// `where` names the model in messages. A missing bus number, a user-defined model and a value without a
+/// column become problems.
 std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
                      Problems& problems);
 

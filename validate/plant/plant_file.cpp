@@ -125,6 +125,7 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
         "\n[dispatch]  # in the case; records of another unit or base are recognised by it\nP_MW = {}\n"
         "Q_Mvar = {}\nV_pu = {}\n",
         number(model.dispatch->P), number(model.dispatch->Q), number(model.dispatch->V));
+  text += nameplate_text(model.nameplate, in_quotes, number);
   if (!model.reading.columns.empty()) text += "\n[record.columns]\n";
   for (const auto& [word, column] : model.reading.columns)
     text += fmt::format("{} = {}\n", word, in_quotes(column));
@@ -185,6 +186,7 @@ std::string difference(const PlantModel& a, const PlantModel& b) {
   if (!same(a.record_base.efd, b.record_base.efd) || !same(a.record_base.ifd, b.record_base.ifd))
     return "the base of Efd and Ifd";
   if (a.dispatch != b.dispatch) return "the dispatch";
+  if (a.nameplate != b.nameplate) return "the nameplate";
   if (a.reading.columns != b.reading.columns) return "the records' columns";
   if (a.reading.staged != b.reading.staged) return "the staged events";
   if (!same(a.conventions.frequency, b.conventions.frequency) ||

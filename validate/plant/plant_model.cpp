@@ -291,6 +291,7 @@ PlantModel parse_with_user_models(const std::string& text, const fs::path& file,
   if (config.has("dispatch"))
     model.dispatch = {config.require<double>("dispatch.P_MW"), config.require<double>("dispatch.Q_Mvar"),
                       config.require<double>("dispatch.V_pu", {kSmallest, 10.0, "pu"})};
+  model.nameplate = read_nameplate(config);
   model.reading.staged = read_staged_events(config);
   for (const auto& word : config.keys("record.columns"))
     model.reading.columns[word] = config.require<std::string>("record.columns." + word);

@@ -10,6 +10,7 @@
 #include "sim/grid/unit.hpp"
 #include "sim/library/library.hpp"
 #include "sim/plant/under_test.hpp"
+#include "validate/plant/nameplate.hpp"
 #include "validate/record/record.hpp"
 
 namespace swingbank::validate::plant {
@@ -28,6 +29,7 @@ struct PlantModel {
   std::string id = "1";  ///< machine identifier in its case
   /// Output in its case; none: unknown. Used to check records, never as an initial condition.
   std::optional<sim::grid::Dispatch> dispatch = {};
+  Nameplate nameplate = {};  ///< nameplate of the plant, for reports
   /// Parameters ("SEXS.TE") that the file leaves at their default values (`standard = true`).
   std::vector<std::string> defaults = {};
   /// Plant before a calibration that was rejected; its parameters do not compensate for a missing effect.
