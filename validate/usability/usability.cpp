@@ -1,0 +1,232 @@
+#include "validate/usability/usability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/in_parallel.hpp"
+#include "base/json.hpp"
+#include "sim/reference/reference.hpp"
+
+namespace swingbank::validate::usability {
+namespace {
+
+using sim::plant::Plant;
+namespace network = sim::network;
+
+constexpr double kPercent = 100;
+
+/// Returns the plant without what belongs to an event: instruments and changed references.
+Plant plant_for_studies(Plant plant) {
+  plant.measurements.clear();
+  std::erase_if(plant.controls, [](const sim::plant::Block& b) {
+    return b.effect->slot == sim::Slot::setpoint && b.effect->dyr_name.empty();
+  });
+  return plant;
+}
+
+/// Returns the control with the voltage reference; null: none.
+const sim::Effect* regulator_of(const Plant& plant) {
+  for (const sim::Slot slot : {sim::Slot::exciter, sim::Slot::plant_control})
+    for (const auto& control : plant.controls)
+      if (control.effect->slot == slot) return control.effect;
+  return nullptr;
+}
+
+/// Returns the plant at bus 0 and the infinite bus at bus 1; the reactance is half a line and half the
+/// source's own, so that none is near zero.
+sim::grid::Grid grid_of(const plant::PlantModel& model, const Plant& plant, const OperatingState& at) {
+  sim::grid::Grid grid;
+  grid.library = model.library;
+  grid.conventions = model.conventions;
+  network::Network& net = grid.network;
+  net.title = net.origin = model.name;
+  net.base_mva = plant.mva;
+  net.frequency = model.conventions.frequency;
+  const Complex power = Complex(at.P, at.Q) / plant.mva, current = std::conj(power / at.voltage);
+  const Complex far = at.voltage - Complex(0, kStudyReactance / 2) * current;
+  const auto bus = [&](int number, const char* name, network::BusType type, Complex v) {
+    net.buses.push_back({number, name, 1.0, type, std::abs(v), std::arg(v)});
+    grid.flow.voltage.push_back(v);
+  };
+  bus(1, "PLANT", network::BusType::generator, at.voltage);
+  bus(2, "INFINITE", network::BusType::slack, far);
+  network::Branch line{};
+  line.from = 0;
+  line.to = 1;
+  line.circuit = "1";
+  line.x = kStudyReactance / 2;
+  net.branches = {line};
+  const auto generator = [&](int at_bus, Complex s, Plant unit) {
+    network::Generator g{};
+    g.bus = at_bus;
+    g.id = "1";
+    g.p = s.real();
+    g.q = s.imag();
+    g.vset = std::abs(grid.flow.voltage[static_cast<std::size_t>(at_bus)]);
+    g.mva = plant.mva;
+    g.in_service = true;
+    net.generators.push_back(g);
+    grid.flow.generation.push_back(s);
+    unit.bus = at_bus;
+    unit.generator = at_bus;
+    unit.generation = s;
+    unit.mva = plant.mva;
+    grid.plants.push_back(std::move(unit));
+  };
+  generator(0, power, plant);
+  grid.plants.front().name = model.name;
+  Plant infinite;
+  infinite.name = "infinite bus";
+  infinite.machine.effect = grid.library.find("GENCLS");
+  infinite.machine.p = {0, 0, 0, kStudyReactance / 2};  // H = 0: angle and speed are constant
+  generator(1, far * std::conj(-current), std::move(infinite));
+  return grid;
+}
+
+/// Returns the step at t = 0. A reactor at the plant's bus changes voltage and reactance of the source behind
+/// it by the same factor, here 1 - kStudyStep (Thevenin).
+network::Event step_of(const Plant& plant, Complex voltage) {
+  if (regulator_of(plant)) return {.faults = {}, .trips = {}, .setpoint_steps = {{0, 0.0, kStudyStep, 0.0}}};
+  const double susceptance = (1 / (1 - kStudyStep) - 1) / kStudyReactance;
+  return {
+      .faults = {}, .trips = {}, .load_steps = {{0, Complex(0, susceptance * std::norm(voltage)), 0.0, {}}}};
+}
+
+/// P and Q of a run, as deviations from the operating point [pu].
+struct Deviation {
+  std::vector<std::vector<double>> of;  ///< [P, Q][sample], without the operating point itself
+  bool stable = false;                  ///< the run reached its end in synchronism
+  [[nodiscard]] double largest(std::size_t signal) const {
+    double most = 0;
+    for (const double v : of[signal]) most = std::max(most, std::abs(v));
+    return most;
+  }
+  /// Whether the response moves less in the second half of the run than in the first.
+  [[nodiscard]] bool decays() const {
+    double half[2] = {0, 0};
+    for (const auto& y : of)
+      for (std::size_t k = 1; k < y.size(); ++k) half[2 * k > y.size()] += std::pow(y[k] - y[k - 1], 2);
+    return half[1] <= half[0];
+  }
+};
+
+constexpr double kStudyRate = 30;         ///< samples per second: oscillations up to 15 Hz
+constexpr double kStudyTolerance = 1e-9;  ///< error per step of the integrator
+
+Deviation simulate(const sim::grid::Grid& grid, const network::Event& event) {
+  sim::reference::ReferenceOptions options;
+  options.t_end = kStudyDuration;
+  options.rate = kStudyRate;
+  options.rtol = kStudyTolerance;
+  options.atol = kStudyTolerance / 100;
+  options.plants = {0};
+  options.channels = {sim::Channel::P, sim::Channel::Q};
+  const auto run = sim::reference::run_reference(grid, event, options);
+  Deviation d;
+  d.stable = run.outcome == sim::Outcome::stable;
+  for (int c = 0; c < 2; ++c) {
+    const double* y = run.at(0, c);
+    auto& deviation = d.of.emplace_back();
+    for (int k = 1; k < run.samples; ++k) deviation.push_back(y[k] - y[0]);
+  }
+  return d;
+}
+
+UsabilityAt check_at(const plant::PlantModel& model, const Plant& plant, const OperatingState& state) {
+  UsabilityAt at;
+  at.state = state;
+  const sim::grid::Grid grid = grid_of(model, plant, state);
+  try {
+    sim::plant::operating_point(grid.plants.front(), state.voltage, grid.network.base_mva, grid.conventions);
+    at.initialises = true;
+    const Deviation still = simulate(grid, {});
+    at.drift_P = kPercent * still.largest(0);
+    at.drift_Q = kPercent * still.largest(1);
+    const Deviation moved = simulate(grid, step_of(plant, state.voltage));
+    at.oscillation = least_damped_oscillation(moved.of, kStudyRate, kSampleError);
+    at.damped = moved.stable && moved.decays();
+    if (auto& o = at.oscillation) {
+      // The decay in one radian must exceed the error of a sample; without damping its sign is that of
+      // rounding.
+      at.damped = at.damped && o->damping * o->amplitude > kSampleError;
+      o->amplitude *= kPercent;
+    }
+  } catch (const InputError& error) {
+    at.failure = error.problems().front().sentence();
+  }
+  return at;
+}
+
+}  // namespace
+
+std::string Usability::verdict() const {
+  if (!not_checked.empty()) return "Usability was not checked";
+  const auto all = [&](auto holds) { return std::ranges::all_of(at, holds); };
+  if (!all([](const UsabilityAt& a) { return a.initialises; }))
+    return "Does not initialise at every operating point";
+  if (!all([](const UsabilityAt& a) { return a.failure.empty(); }))
+    return "Cannot be simulated at every operating point";
+  if (!all([](const UsabilityAt& a) { return a.damped; }))
+    return "Initialises, but the step response is undamped";
+  return "Initialises; the step response is damped";
+}
+
+bool Usability::usable() const {
+  return not_checked.empty() && std::ranges::all_of(at, [](const UsabilityAt& a) {
+           return a.initialises && a.failure.empty() && a.damped;
+         });
+}
+
+Usability check_usability(const plant::PlantModel& model, const std::vector<OperatingState>& states) {
+  Usability all;
+  if (model.reading.component != record::Component::plant)
+    all.not_checked =
+        fmt::format("the records are those of the {} alone, without the plant's operating point",
+                    record::component_name(model.reading.component));
+  else if (states.empty())
+    all.not_checked = "the model follows no record, so there is no operating point";
+  else if (const auto at =
+               std::ranges::find_if(states, [](const auto& s) { return !(std::abs(s.voltage) > 0); });
+           at != states.end())
+    all.not_checked = at->event + " has no voltage before the event";
+  if (!all.not_checked.empty()) return all;
+  const Plant plant = plant_for_studies(model.plant);
+  const sim::Effect* regulator = regulator_of(plant);
+  all.step = regulator ? fmt::format("step of the reference of {} by {:+g} pu", regulator->name, kStudyStep)
+                       : fmt::format("step of the infinite bus's voltage by {:+g} %", -kPercent * kStudyStep);
+  all.at.resize(states.size());
+  in_parallel(
+      states.size(), [&](std::size_t k) { all.at[k] = check_at(model, plant, states[k]); }, [](int) {});
+  return all;
+}
+
+nlohmann::json usability_json(const Usability& usability) {
+  nlohmann::json j = {
+      {"verdict", usability.verdict()},
+      {"usable", usability.not_checked.empty() ? nlohmann::json(usability.usable()) : nullptr},
+      {"not_checked", usability.not_checked},
+      {"step", usability.step},
+      {"reactance_pu", kStudyReactance},
+      {"duration_s", kStudyDuration},
+      {"operating_points", nlohmann::json::array()}};
+  for (const UsabilityAt& at : usability.at) {
+    nlohmann::json one = {{"record", at.state.event},      {"P_MW", at.state.P},
+                          {"Q_Mvar", at.state.Q},          {"V_pu", std::abs(at.state.voltage)},
+                          {"initialises", at.initialises}, {"failure", at.failure}};
+    const bool simulated = at.failure.empty();
+    one["drift_P_percent_of_mva"] = simulated ? nlohmann::json(at.drift_P) : nullptr;
+    one["drift_Q_percent_of_mva"] = simulated ? nlohmann::json(at.drift_Q) : nullptr;
+    one["damped"] = simulated ? nlohmann::json(at.damped) : nullptr;
+    one["oscillation"] = nullptr;
+    if (const auto& o = at.oscillation)
+      one["oscillation"] = {{"frequency_hz", o->frequency},
+                            {"damping_ratio", o->damping},
+                            {"amplitude_percent_of_mva", o->amplitude}};
+    j["operating_points"].push_back(std::move(one));
+  }
+  return j;
+}
+
+}  // namespace swingbank::validate::usability
