@@ -45,14 +45,14 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
           compare::play_and_judge("completed", after, shown, options, a.of.judging.by)};
 }
 
-/// Adds parameters, unseen events and evidence of one addition to a page.
+/// Adds parameters, use of the events and evidence of one addition to a page.
 void say_on(compare::CommandPage& page, const add::Addition& added) {
   const auto rows = jobs::page_parameters(added.parameters, added.model.plant);
   page.parameters.assign(rows.begin(), rows.end());
   for (int i = 0; i < added.own; ++i) page.parameters[static_cast<std::size_t>(i)].note = "added";
-  page.unseen.clear();
+  page.use = {true};
   for (const auto& e : added.events)
-    if (!e.score.seen) page.unseen.push_back(e.score.record);
+    if (!e.score.seen) page.use.held_out.push_back(e.score.record);
   page.tried.push_back(fmt::format("{}: evidence {:.1f}, required {:g}; {}.", added.hypothesis.what,
                                    added.evidence, thresholds::addition.strong.value,
                                    added.earns ? "accepted" : "not accepted"));
@@ -117,7 +117,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
     fmt::print("{}\n", json_text(result, 1));
   else
     fmt::print("{}{}\n{}\nmodel: {}\n{}\n", compare::fitness_text(played), text,
-               compare::error_text(played, page.unseen), model_file.string(), records.line);
+               compare::error_text(played, page.use), model_file.string(), records.line);
   a.of.judging.print(page_file);
 }
 

@@ -57,13 +57,13 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
           compare::play_and_judge("calibrated", after, shown, options, a.of.judging.by)};
 }
 
-/// Returns the names of the held-out records.
-std::vector<std::string> unseen_of(const Arguments& a, const std::vector<record::Record>& records) {
+/// Returns the use of the records: fit, or verification if held out.
+compare::EventUse use_of(const Arguments& a, const std::vector<record::Record>& records) {
   const auto out = calibrate::held_out_events(records, a.options.held_out);
-  std::vector<std::string> names;
+  compare::EventUse use{true};
   for (std::size_t k = 0; k < records.size(); ++k)
-    if (out[k]) names.push_back(records[k].name);
-  return names;
+    if (out[k]) use.held_out.push_back(records[k].name);
+  return use;
 }
 
 /// Returns the command that follows: a comparison of the calibrated model, or the diagnosis of an inadequate
@@ -145,12 +145,12 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector
   page.sentence = f.sentence;
   page.played = played;
   page.parameters = jobs::page_parameters(f.parameters, f.model.plant);
-  page.unseen = unseen_of(a, records);
+  page.use = use_of(a, records);
   write_page(a, model, std::move(page), result);
   say(a, result,
       compare::fitness_text(played) +
           compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" +
-          compare::error_text(played, unseen_of(a, records)) + "\n" + written);
+          compare::error_text(played, use_of(a, records)) + "\n" + written);
   a.of.judging.print(a.of.results().path() / kPage);
   return played.back().fitness.exit_code(f.adequate);
 }
@@ -200,11 +200,11 @@ int run_sparse(Arguments& a, const plant::PlantModel& model, const std::vector<r
   page.sentence = w.sentence;
   page.played = played;
   page.parameters = jobs::page_parameters(w.found.fit.parameters, w.model.plant);
-  page.unseen = unseen_of(a, records);
+  page.use = use_of(a, records);
   write_page(a, model, std::move(page), result);
   say(a, result,
       compare::fitness_text(played) + compare::complete_text(w.is_adequate(), calibrate::wrong_text(w)) +
-          "\n" + compare::error_text(played, unseen_of(a, records)) + "\n" + written);
+          "\n" + compare::error_text(played, use_of(a, records)) + "\n" + written);
   a.of.judging.print(a.of.results().path() / kPage);
   return played.back().fitness.exit_code(w.is_adequate());
 }
@@ -241,7 +241,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   const auto played = play_both(a, model, c.model, records);
   std::string text = compare::fitness_text(played) +
                      compare::complete_text(adequate, calibrate::terminal_report(c)) + "\n" +
-                     compare::error_text(played, unseen_of(a, records));
+                     compare::error_text(played, use_of(a, records));
   nlohmann::json result = calibrate::calibration_json(c);
   result["command"] = a.command;
   result["standard_values"] = model.defaults;
@@ -269,7 +269,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   std::vector<fit::FittedParameter> fitted;
   for (const auto& p : c.parameters) fitted.push_back(p.fit);
   page.parameters = jobs::page_parameters(fitted, c.model.plant);
-  page.unseen = unseen_of(a, records);
+  page.use = use_of(a, records);
   for (const auto& blur : c.blurs) page.tried.push_back(calibrate::describe(c, blur));
   write_page(a, model, std::move(page), result);
   text += "\n" + write_model(a, model, c.model, adequate, calibrate::provenance_lines(c, a.command));

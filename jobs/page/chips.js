@@ -7,7 +7,7 @@ export function build(state, choose) {
   by("chips").replaceChildren(
     ...setup.events.map((event, e) => {
       const unseen = step.held_out.includes(event.name);
-      const mark = unseen ? " (unseen)" : state.heldOut.has(event.name) ? " (held out next)" : "";
+      const mark = unseen ? " (verification)" : state.heldOut.has(event.name) ? " (held out next)" : "";
       const group = make(
         "div",
         { className: "group" + (e === state.event ? " now" : "") },

@@ -17,6 +17,7 @@ r = json.load(open(sys.argv[1]))
 assert r["effect"] == "SEXS" and r["earns_its_place"] and r["adequate"], r["sentence"]
 seen, unseen = r["events"]
 assert (seen["record"], seen["seen"], unseen["seen"]) == ("avr_ev1.csv", True, False)
+assert [e["use"] for e in r["events"]] == ["fit", "verification"]
 assert unseen["misfit_before"] > 100 * unseen["misfit_after"]
 assert [e["unit"] for e in r["errors"] if e["model"] == "submitted" and e["record"] == "avr_ev2.csv"] == ["MW", "Mvar"]
 PYTHON
@@ -35,7 +36,8 @@ for event in compared["events"]:
         assert own["noise"] == c["noise_pu"] * c["units_in_pu"], own
         assert abs(own["rms_over_noise"] - own["rms"] / own["noise"]) < 1e-9 * own["rms_over_noise"], own
 PYTHON
-for words in 'Added effect' 'evidence' 'avr_ev2.csv (held out)' 'completed'; do
+for words in 'Added effect' 'evidence' 'event 1 (fit)' 'event 2 (verification)' 'completed' \
+  'verified by the independent event avr_ev2.csv'; do
   grep -qF -- "$words" "$work/added/report.html" || fail "'$words' is not on the page"
 done
 grep -q '^effect = "SEXS"' "$work/added/model.toml" || fail "the new model has no SEXS"
@@ -52,6 +54,7 @@ grep -q 'no .dyr: no bus number' "$work/said" || fail "no word of the records"
 grep -q '^// changed or new: GENROU, SEXS' "$work/numbered/model.dyr" || fail "the records do not say what changed"
 cmp <("$swingbank" export --model "$work/numbered/model.toml" | grep -v '^//') <(grep -v '^//' "$work/numbered/model.dyr") || fail "model.dyr is not what export makes"
 grep -q 'SEXS.K' "$work/text" || fail "the table lacks the exciter's gain"
+grep -q 'no independent event verifies the fit' "$work/again/report.html" || fail "the page does not say that no event was held out"
 
 # given switching times are used unchanged
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --switch avr_ev1.csv=2 --switch avr_ev1.csv=2.1 --power-only \

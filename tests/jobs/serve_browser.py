@@ -124,7 +124,7 @@ shown = page.execute_script("return bands_of_test().map((b, k) => b && [charts_o
 assert all(shown), "a fitted model has no 95 % band"
 assert "Q ± " in text("band-size") and "Mvar" in text("band-size"), text("band-size")
 assert all(low < model < high for channel in shown for model, low, high in zip(*channel)), "the band does not enclose the curve"
-assert "(unseen)" in text("chips"), text("chips")
+assert "(verification)" in text("chips"), text("chips")
 assert "swingbank add SEXS" in text("command") and "--hold-out avr_ev4.csv" in text("command"), text("command")
 
 # the candidates stay: another one can be tried from the diagnosed model
@@ -147,7 +147,7 @@ until("undo of both values", lambda: text("now") == "this model: + SEXS", 30)
 page.refresh()
 until("the page again", lambda: page.execute_script("return document.body.dataset.compared"), 60)
 until("the step again", lambda: text("now") == "this model: + SEXS", 20)
-assert "submitted model" in text("steps") and "(unseen)" in text("chips"), text("steps")
+assert "submitted model" in text("steps") and "(verification)" in text("chips"), text("steps")
 ActionChains(page).send_keys("4").perform()
 until("the held-out event", lambda: one("hold").is_selected(), 20)
 

@@ -62,10 +62,10 @@ json parameter_json(const fit::FittedParameter& p, bool own) {
 }  // namespace
 
 report::Table addition_table(const Addition& a) {
-  report::Table t{"Events", {"event", "", "chi2/value before", "refitted", "after", "limit"}, {}};
+  report::Table t{"Events", {"event", "use", "chi2/value before", "refitted", "after", "limit"}, {}};
   for (const auto& event : a.events) {
     const calibrate::EventScore& e = event.score;
-    t.rows.push_back({e.record, e.seen ? "fitted" : "UNSEEN", fmt::format("{:.3g}", e.before),
+    t.rows.push_back({e.record, calibrate::use_name(e), fmt::format("{:.3g}", e.before),
                       fmt::format("{:.3g}", event.refitted),
                       fmt::format("{:.3g}{}", e.after, e.adequate() ? "" : " !"),
                       fmt::format("{:.3g}", e.limit)});

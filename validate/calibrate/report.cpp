@@ -121,9 +121,9 @@ report::Table parameter_table(const Calibration& c) {
 }
 
 report::Table event_table(const std::vector<EventScore>& events) {
-  report::Table t{"Events", {"event", "", "chi2/value before", "after", "limit"}, {}};
+  report::Table t{"Events", {"event", "use", "chi2/value before", "after", "limit"}, {}};
   for (const auto& e : events) {
-    t.rows.push_back({e.record, e.seen ? "fitted" : "unseen", fmt::format("{:.3g}", e.before),
+    t.rows.push_back({e.record, use_name(e), fmt::format("{:.3g}", e.before),
                       fmt::format("{:.3g}{}", e.after, e.adequate() ? "" : " !"),
                       fmt::format("{:.3g}", e.limit)});
   }
@@ -152,10 +152,13 @@ std::string terminal_report(const Calibration& c) {
   return text;
 }
 
+std::string use_name(const EventScore& e) { return e.seen ? "fit" : "verification"; }
+
 json event_json(const EventScore& e) {
-  return {{"record", e.record},           {"seen", e.seen},          {"misfit_before", e.before},
-          {"misfit_after", e.after},      {"misfit_limit", e.limit}, {"adequate", e.adequate()},
-          {"noise_correlation", e.colour}};
+  return {{"record", e.record},       {"seen", e.seen},
+          {"use", use_name(e)},       {"misfit_before", e.before},
+          {"misfit_after", e.after},  {"misfit_limit", e.limit},
+          {"adequate", e.adequate()}, {"noise_correlation", e.colour}};
 }
 
 json calibration_json(const Calibration& c) {

@@ -11,7 +11,9 @@ namespace swingbank::validate::calibrate {
 
 /// Table of parameters: start, value, standard error, 95 % interval, share determined by the records.
 report::Table parameter_table(const Calibration& c);
-/// Table of events: fitted or unseen, reduced chi-square before and after, and its limit.
+/// Returns the use of an event: "fit" or "verification".
+std::string use_name(const EventScore& e);
+/// Table of events: use, reduced chi-square before and after, and its limit.
 report::Table event_table(const std::vector<EventScore>& events);
 
 /// Verdict, tables, parameters that are not identified, and events that would identify them.

@@ -188,11 +188,11 @@ report::Table parameters_beside(const std::vector<Way>& ways, const Truth& truth
 }
 
 report::Table events_beside(const std::vector<Way>& ways) {
-  report::Table t{"Events", {"event", ""}, {}};
+  report::Table t{"Events", {"event", "use"}, {}};
   for (const auto& way : ways) t.header.push_back(way.name);
   for (std::size_t e = 0; e < ways.front().events.size(); ++e) {
     const EventScore& first = ways.front().events[e];
-    std::vector<report::Cell> row = {first.record, first.seen ? "fitted" : "UNSEEN"};
+    std::vector<report::Cell> row = {first.record, use_name(first)};
     for (const auto& way : ways) row.emplace_back(fmt::format("{:.3g}", way.events[e].after));
     t.rows.push_back(std::move(row));
   }

@@ -41,8 +41,9 @@ void add_cells(std::vector<report::Cell>& row, const ChannelComparison* c) {
 
 }  // namespace
 
-report::Table error_table(const std::vector<Played>& played, const std::vector<std::string>& unseen) {
+report::Table error_table(const std::vector<Played>& played, const EventUse& use) {
   report::Table table{kErrorCaption, {"event", "channel"}, {}};
+  if (use.fitted) table.header.emplace_back("use");
   const bool single = played.size() == 1;
   for (const Played& p : played)
     for (const char* what : {"RMS", "noise σ", "RMS / noise"})
@@ -52,9 +53,9 @@ report::Table error_table(const std::vector<Played>& played, const std::vector<s
   if (longest == played.end()) return table;
   for (std::size_t e = 0; e < longest->events.size(); ++e) {
     const EventComparison& event = longest->events[e];
-    const bool fitted_to = std::ranges::find(unseen, event.record.name) == unseen.end();
     for (const ChannelComparison& c : event.channels) {
-      std::vector<report::Cell> row = {event.record.name + (fitted_to ? "" : " (held out)"), c.name};
+      std::vector<report::Cell> row = {event.record.name, c.name};
+      if (use.fitted) row.emplace_back(use.of(event.record.name));
       for (const Played& p : played) add_cells(row, find_channel(p, e, c.name));
       if (single) {
         row.emplace_back(quantity(c.whole.worst, c));
@@ -66,9 +67,9 @@ report::Table error_table(const std::vector<Played>& played, const std::vector<s
   return table;
 }
 
-std::string error_text(const std::vector<Played>& played, const std::vector<std::string>& unseen) {
-  const report::Table table = error_table(played, unseen);
-  return table.caption + "\n" + report::padded(table);
+std::string error_text(const std::vector<Played>& played, const EventUse& use) {
+  const report::Table table = error_table(played, use);
+  return table.caption + "\n" + report::padded(table, use.fitted ? 3 : 2);
 }
 
 nlohmann::json errors_json(const std::vector<Played>& played) {

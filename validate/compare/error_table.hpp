@@ -4,16 +4,17 @@
 #include <string>
 #include <vector>
 
+#include "validate/compare/event_use.hpp"
 #include "validate/compare/played.hpp"
 
 namespace swingbank::validate::compare {
 
 /// Table with one row per event and channel: RMS, noise σ and RMS / noise of the whole record for each model
-/// (WindowError, ChannelComparison). For a single model it also has the largest error. `unseen`: names of
-/// held-out records.
-report::Table error_table(const std::vector<Played>& played, const std::vector<std::string>& unseen = {});
+/// (WindowError, ChannelComparison). For a single model it also has the largest error. After
+/// a fit, a column has the use of each event.
+report::Table error_table(const std::vector<Played>& played, const EventUse& use = {});
 /// The same table as terminal text below its caption.
-std::string error_text(const std::vector<Played>& played, const std::vector<std::string>& unseen = {});
+std::string error_text(const std::vector<Played>& played, const EventUse& use = {});
 /// JSON rows: record, channel, model, unit, rms, noise and rms_over_noise (null without noise).
 nlohmann::json errors_json(const std::vector<Played>& played);
 

@@ -35,8 +35,8 @@ std::string fall_text(const ChannelComparison& before, const ChannelComparison* 
 }
 
 std::string event_label(const FirstScreen& s, std::size_t event) {
-  const bool unseen = std::ranges::count(s.unseen, s.before->events[event].record.name) > 0;
-  return fmt::format("event {}{}", event + 1, unseen ? " (held out)" : "");
+  if (!s.use.fitted) return fmt::format("event {}", event + 1);
+  return fmt::format("event {} ({})", event + 1, s.use.of(s.before->events[event].record.name));
 }
 
 report::Chips::Chip chip(const FirstScreen& s, std::size_t event, const ChannelComparison& c) {

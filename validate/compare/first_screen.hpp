@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "validate/compare/event_use.hpp"
 #include "validate/compare/played.hpp"
 #include "validate/report/document.hpp"
 
@@ -31,7 +32,7 @@ struct FirstScreen {
   const Played* before = nullptr;         ///< shown model; with `after`: the submitted one
   const Played* after = nullptr;          ///< changed model; null: none
   bool judge_before = false;              ///< chips have the colour of `before`, else of `after`
-  std::vector<std::string> unseen = {};   ///< names of held-out events
+  EventUse use = {};                      ///< events of the fit and of its verification
   std::string next = {};                  ///< next command; empty: none
 };
 /// Adds headline, chips, P and Q of the worst event, and the fall of the errors.

@@ -139,6 +139,12 @@ std::string model_title(const std::string& name) {
   return title;
 }
 
+std::vector<std::string> records_of(const std::vector<Played>& played) {
+  std::vector<std::string> names;
+  for (const EventComparison& e : followed_events(played)) names.push_back(e.record.name);
+  return names;
+}
+
 /// Returns the screen of a command whose last model is the result.
 FirstScreen screen_of(const CommandPage& p) {
   FirstScreen s;
@@ -150,13 +156,15 @@ FirstScreen screen_of(const CommandPage& p) {
   s.reasons = {fitness.not_judged.empty()
                    ? (several ? model_title(p.played.back().name) + ". " : "") + fitness.sentence
                    : complete_text(p.complete, p.sentence)};
+  if (std::string use = p.use.sentence(records_of(p.played)); !use.empty())
+    s.reasons.push_back(std::move(use));
   const bool fit = fitness.not_judged.empty() ? fitness.fit : p.complete;
   s.tone = p.complete && fit   ? report::Tone::good
            : fit || p.complete ? report::Tone::warn
                                : report::Tone::bad;
   s.before = &p.played.front();
   if (several) s.after = &p.played.back();
-  s.unseen = p.unseen;
+  s.use = p.use;
   s.next = p.next;
   return s;
 }
@@ -214,11 +222,10 @@ void parameters_part(report::Document& page, const std::vector<PageParameter>& p
   page.add(table);
 }
 
-void errors_part(report::Document& page, const std::vector<Played>& played,
-                 const std::vector<std::string>& unseen) {
+void errors_part(report::Document& page, const std::vector<Played>& played, const EventUse& use) {
   if (std::ranges::all_of(played, [](const Played& p) { return p.events.empty(); })) return;
   page.section("Error of each event");
-  page.add(error_table(played, unseen));
+  page.add(error_table(played, use));
 }
 
 void heat_maps(report::Document& page, const report::Table& map) {
@@ -267,6 +274,8 @@ void glossary_part(report::Document& page) {
        {"evidence",
         "2 ln(Bayes factor) of the model with the effect against the model without it, penalised for the "
         "added parameters."},
+       {"fit, verification",
+        "Use of an event: the parameters were fitted to it, or it was held out and verifies the fit."},
        {"prior", "Standard deviation of a parameter before the records were used (--spread)."},
        {"determined",
         "Share of a parameter's interval that is determined by the records, not by the prior."}}});
@@ -285,7 +294,7 @@ std::string command_html(const CommandPage& p) {
   for (const auto& sentence : p.tried) page.text(sentence);
   panels_part(page, p.played);
   parameters_part(page, p.parameters);
-  errors_part(page, p.played, p.unseen);
+  errors_part(page, p.played, p.use);
   glossary_part(page);
   page.provenance(p.provenance);
   if (!p.figures.empty()) page.add(report::Data{"figures", p.figures});

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "validate/compare/event_use.hpp"
 #include "validate/compare/played.hpp"
 #include "validate/report/document.hpp"
 
@@ -25,9 +26,8 @@ void limits_part(report::Document& page, const std::vector<Played>& played);
 void panels_part(report::Document& page, const std::vector<Played>& played);
 /// Table of parameters: before, after, 95 % interval. Without intervals (compare): the model's values.
 void parameters_part(report::Document& page, const std::vector<PageParameter>& parameters);
-/// Table of error_table(). `unseen`: names of held-out events.
-void errors_part(report::Document& page, const std::vector<Played>& played,
-                 const std::vector<std::string>& unseen = {});
+/// Table of error_table().
+void errors_part(report::Document& page, const std::vector<Played>& played, const EventUse& use = {});
 /// Error map of map_table() or worst_map_table() as a heat map for each channel, side by side.
 void heat_maps(report::Document& page, const report::Table& map);
 /// Error map of each model.
@@ -37,16 +37,17 @@ void glossary_part(report::Document& page);
 
 /// Content of a page that consists of the shared parts only; `tried` is its list of hypotheses.
 struct CommandPage {
-  std::string title, subtitle;             ///< heading; line below it
-  std::string headline = {};               ///< verdict in at most eight words; empty: that of compare
-  std::string next = {};                   ///< next command; empty: none
-  bool complete = false;                   ///< statistically complete: the residual is noise
-  std::string sentence;                    ///< verdict in words
-  std::vector<Played> played;              ///< models with their comparisons, in order
-  std::vector<PageParameter> parameters;   ///< table of parameters; may be empty
-  std::vector<std::string> unseen, tried;  ///< results on unseen events; tried hypotheses
-  report::Provenance provenance;           ///< inputs and software of the run
-  std::string figures;                     ///< JSON
+  std::string title, subtitle;            ///< heading; line below it
+  std::string headline = {};              ///< verdict in at most eight words; empty: that of compare
+  std::string next = {};                  ///< next command; empty: none
+  bool complete = false;                  ///< statistically complete: the residual is noise
+  std::string sentence;                   ///< verdict in words
+  std::vector<Played> played;             ///< models with their comparisons, in order
+  std::vector<PageParameter> parameters;  ///< table of parameters; may be empty
+  EventUse use = {};                      ///< events of the fit and of its verification
+  std::vector<std::string> tried;         ///< tried hypotheses
+  report::Provenance provenance;          ///< inputs and software of the run
+  std::string figures;                    ///< JSON
 };
 /// Returns the page as HTML.
 std::string command_html(const CommandPage& page);

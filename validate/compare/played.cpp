@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "base/in_parallel.hpp"
@@ -32,6 +33,12 @@ Played play_and_judge(std::string name, const plant::PlantModel& model,
     played.fitness = not_judged(by, mva, error.problems().front().sentence());
   }
   return played;
+}
+
+const std::vector<EventComparison>& followed_events(const std::vector<Played>& played) {
+  static const std::vector<EventComparison> none;
+  const auto first = std::ranges::find_if(played, [](const Played& p) { return !p.events.empty(); });
+  return first == played.end() ? none : first->events;
 }
 
 std::vector<record::Record> power_only(std::vector<record::Record> records) {

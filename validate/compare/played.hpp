@@ -22,6 +22,8 @@ Played play_and_judge(std::string name, const plant::PlantModel& model,
                       const std::vector<record::Record>& records, CompareOptions options,
                       const thresholds::Acceptance& by);
 
+/// Returns the events of the first model that follows them; empty if none does.
+const std::vector<EventComparison>& followed_events(const std::vector<Played>& played);
 /// Returns the records without the measured states speed, Efd and Ifd (--power-only).
 std::vector<record::Record> power_only(std::vector<record::Record> records);
 

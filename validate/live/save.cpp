@@ -93,7 +93,7 @@ nlohmann::json save(const Session& session, int step, OutputFolder& folder,
     page.played.back().name = "completed";
   }
   page.parameters = changed(setup, last);
-  page.unseen = last.held_out;
+  page.use = {!last.intervals.empty() || !last.held_out.empty(), last.held_out};
   page.provenance = provenance;
   page.figures = json_text(
       {{"format", "swingbank-live-1"}, {"steps", head}, {"fitness", compare::fitness_json(page.played)}});

@@ -56,6 +56,23 @@ TEST(CompareReportTest, JsonContainsTheNumbers) {
   EXPECT_TRUE(map[1]["normalised_rms"].is_null());  // 2 s contain no frequency below 0.1 Hz
   EXPECT_EQ(j["adequate"], false);
 }
+TEST(EventUseTest, TellsFitFromVerification) {
+  const EventUse none{}, alone{true, {}}, held{true, {"b.csv"}};
+  EXPECT_EQ(none.of("a.csv"), "comparison");
+  EXPECT_EQ(none.sentence({"a.csv"}), "");
+  EXPECT_EQ(alone.sentence({"a.csv"}),
+            "Fitted to 1 event; no independent event verifies the fit (--hold-out).");
+  EXPECT_EQ(held.of("a.csv") + held.of("b.csv"), "fitverification");
+  EXPECT_EQ(held.sentence({"a.csv", "c.csv", "b.csv"}),
+            "Fitted to 2 events; verified by the independent event b.csv.");
+  std::vector<EventComparison> events = {example_event()};
+  judge(events);
+  const report::Table table =
+      error_table({{"one", events, fitness_of(events)}}, {true, {events[0].record.name}});
+  EXPECT_EQ(table.header[2], "use");
+  EXPECT_EQ(table.rows[0][2].text, "verification");
+}
+
 TEST(CompareReportTest, PageLoadsNothingExternal) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
