@@ -109,6 +109,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   plant::write_plant_file(model_file, model, provenance);
   const plant::WrittenRecords records = plant::write_records_beside(model_file, whole_before, model);
   if (!records.file.empty()) results.file(records.file.filename());
+  page.signatures = true;
   page.figures = json_text(result);
   write_file(page_file, compare::command_html(page));
   write_file(results.file(kResult), json_text(result, 1) + "\n");

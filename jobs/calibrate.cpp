@@ -113,6 +113,7 @@ void write_page(const Arguments& a, const plant::PlantModel& model, compare::Com
     if (const auto begins = record::beginning(e.record); !begins.empty())
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
   jobs::sign(page.provenance, a.of.judging, a.of.model, a.of.records);
+  page.signatures = true;
   page.figures = json_text(result);
   write_file(a.of.results().file(kPage), compare::command_html(page));
 }

@@ -297,6 +297,7 @@ std::string command_html(const CommandPage& p) {
   errors_part(page, p.played, p.use);
   glossary_part(page);
   page.provenance(p.provenance);
+  if (p.signatures) page.add(report::Signatures{{"Owner", "Reviewer"}});
   if (!p.figures.empty()) page.add(report::Data{"figures", p.figures});
   return report::html(page);
 }

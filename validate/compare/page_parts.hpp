@@ -1,6 +1,6 @@
 #pragma once
 // Parts that the reports of all commands share. Their order is: first screen, limits, error maps, hypotheses,
-// panels of the events, parameters, errors, glossary, provenance.
+// panels of the events, parameters, errors, glossary, provenance, signatures.
 #include <string>
 #include <vector>
 
@@ -46,6 +46,7 @@ struct CommandPage {
   std::vector<PageParameter> parameters;  ///< table of parameters; may be empty
   EventUse use = {};                      ///< events of the fit and of its verification
   std::vector<std::string> tried;         ///< tried hypotheses
+  bool signatures = false;                 ///< blank lines for owner and reviewer in print
   report::Provenance provenance;          ///< inputs and software of the run
   std::string figures;                    ///< JSON
 };

@@ -179,6 +179,7 @@ std::string html_report(const plant::PlantModel& model, const std::vector<EventC
   page.played = {{"model", events, fitness}};
   page.parameters = parameters_of(model.plant);
   page.provenance = rows;
+  page.signatures = true;
   if (!adequacy.adequate) page.next = next_command(rows, "diagnose");
   page.figures = json_report(model, events, adequacy, fitness, rows);
   return command_html(page);

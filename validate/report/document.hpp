@@ -135,6 +135,10 @@ struct Facts {
 struct Data {
   std::string id, json;  ///< id of the element; content
 };
+/// Blank lines for name, date and signature of each role, on paper only.
+struct Signatures {
+  std::vector<std::string> roles;  ///< "Owner", "Reviewer"
+};
 /// Begins a layout that ends at the matching End.
 struct Begin {
   /// Large charts side by side; charts in two columns; figures in one row; a folded part with a title.
@@ -146,7 +150,7 @@ struct End {};
 
 /// Part of a document.
 using Block = std::variant<Heading, Paragraph, Opening, Verdict, Chips, Table, Curves, Bars, Scatter, Picture,
-                           Facts, Data, Begin, End>;
+                           Facts, Data, Signatures, Begin, End>;
 
 /// Origin of a document's figures: name and value of each line.
 using Provenance = std::vector<std::pair<std::string, std::string>>;

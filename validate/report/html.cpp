@@ -147,6 +147,14 @@ class Renderer {
     body += fmt::format("<script type=\"application/json\" id=\"{}\">{}</script>\n", escape(d.id),
                         script_safe(d.json));
   }
+  void operator()(const Signatures& s) {
+    body +=
+        "<section class=\"signatures\"><h2>Signatures</h2><table><thead><tr><th></th><th>Name</th><th>Date</th>"
+        "<th>Signature</th></tr></thead><tbody>\n";
+    for (const auto& role : s.roles)
+      body += fmt::format("<tr><th>{}</th><td></td><td></td><td></td></tr>\n", escape(role));
+    body += "</tbody></table></section>\n";
+  }
   void operator()(const Begin& b) {
     const bool fold = b.layout == Begin::Layout::fold;
     ends_.push_back(fold ? "</details>\n" : "</div>\n");

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# What is handed in: signatures of the reports; faulty nameplates.
+source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
+# shellcheck disable=SC2154 # set by verdict.bash
+source "$(dirname "${BASH_SOURCE[0]}")/verdict.bash"
+
+gives 3 '^Fit for purpose: no' compare --model "$bent"
+
+# signatures are on paper only, and the page is no wider than a phone
+if command -v chromium >/dev/null; then
+  shown() {
+    sed "s|</main>|</main><script>addEventListener('load', () => { const e = document.querySelector('.signatures'); \
+document.body.innerText = 'shown:' + getComputedStyle(e).display + ';'; })</script>|; s|@media print|@media $1|" \
+      "$work/out/report.html" >"$work/shown.html"
+    chromium --headless --no-sandbox --disable-gpu --window-size=400,800 --dump-dom "file://$work/shown.html" 2>/dev/null | grep -o 'shown:[a-z]*;'
+  }
+  [[ $(shown print) == 'shown:none;' ]] || fail "signatures are on the screen: $(shown print)"
+  [[ $(shown all) == 'shown:block;' ]] || fail "signatures are not in print: $(shown all)"
+fi
+
+# faults of a nameplate: all at once, nothing written
+rm -rf "$work/out"
+cat "$bent" - >"$work/wrong.toml" <<'TOML'
+[nameplate]
+ownr = "A"
+mva = -1
+tested = "2026-02-30"
+TOML
+refuses "a faulty nameplate" 'unknown key nameplate.ownr at .*did you mean owner' "$swingbank" compare --model "$work/wrong.toml" --records "$one" --out "$work/out"
+for words in 'nameplate.mva = -1' '2026-02-30'; do grep -q "$words" "$work/stderr" || fail "'$words' is not reported at once"; done
+[[ ! -e $work/out ]] || fail "files left behind"
