@@ -12,6 +12,7 @@
 #include "jobs/retrain_run.hpp"
 #include "validate/add/report.hpp"
 #include "validate/compare/error_table.hpp"
+#include "validate/compare/report_json.hpp"
 #include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
 #include "validate/thresholds/adequacy.hpp"
@@ -83,6 +84,7 @@ compare::CommandPage page_of(const add::Completion& c) {
 void write(const Arguments& a, const plant::PlantModel& before, plant::PlantModel model,
            const std::vector<std::string>& provenance, nlohmann::json result, const std::string& text,
            const std::vector<compare::Played>& played, compare::CommandPage page) {
+  page.handed_in = compare::handed_in(model, compare::followed_events(played));
   const plant::PlantModel whole_before = event::whole_model(before);
   model = event::whole_model(std::move(model));
   model.submitted.reset();
@@ -100,16 +102,14 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
     if (const auto begins = record::beginning(e.record); !begins.empty())
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
   jobs::sign(page.provenance, a.of.judging, a.of.model, a.of.records);
-  result["format"] = "swingbank-add-3";
-  result["command"] = a.command;
   result["standard_values"] = before.defaults;
   result["records"] = a.metadata;
   result["fitness"] = compare::fitness_json(played);
-  result["errors"] = compare::errors_json(played);
+  page.signatures = true;
+  compare::add_report(result, "add", page);
   plant::write_plant_file(model_file, model, provenance);
   const plant::WrittenRecords records = plant::write_records_beside(model_file, whole_before, model);
   if (!records.file.empty()) results.file(records.file.filename());
-  page.signatures = true;
   page.figures = json_text(result);
   write_file(page_file, compare::command_html(page));
   write_file(results.file(kResult), json_text(result, 1) + "\n");
@@ -117,8 +117,9 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
   if (a.of.json)
     fmt::print("{}\n", json_text(result, 1));
   else
-    fmt::print("{}{}\n{}\nmodel: {}\n{}\n", compare::fitness_text(played), text,
-               compare::error_text(played, page.use), model_file.string(), records.line);
+    fmt::print("{}{}{}\n{}\nmodel: {}\n{}\n", compare::fitness_text(played),
+               compare::handed_in_text(*page.handed_in), text, compare::error_text(played, page.use),
+               model_file.string(), records.line);
   a.of.judging.print(page_file);
 }
 

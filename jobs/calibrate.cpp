@@ -15,6 +15,7 @@
 #include "validate/calibrate/side_by_side.hpp"
 #include "validate/calibrate/wrong_parameters.hpp"
 #include "validate/compare/error_table.hpp"
+#include "validate/compare/report_json.hpp"
 #include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
 #include "validate/thresholds/adequacy.hpp"
@@ -97,9 +98,11 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
   return fmt::format("model: {}\n{}\nnext: {}", file.string(), dyr.line, next_command(a, adequate));
 }
 
-/// Writes the page report.html; `result` is embedded as JSON.
-void write_page(const Arguments& a, const plant::PlantModel& model, compare::CommandPage page,
-                const nlohmann::json& result) {
+/// Writes the page report.html, and completes `result`, which is embedded in it, by its common part. Returns
+/// the text on the calibrated model for the terminal.
+std::string write_page(const Arguments& a, const plant::PlantModel& model,
+                       const plant::PlantModel& calibrated, compare::CommandPage page,
+                       nlohmann::json& result) {
   page.title = "Calibration: " + model.name;
   page.subtitle = fmt::format("{} of {:g} MVA; its parameters fitted to the records.", plant::subject(model),
                               model.plant.mva);
@@ -113,9 +116,12 @@ void write_page(const Arguments& a, const plant::PlantModel& model, compare::Com
     if (const auto begins = record::beginning(e.record); !begins.empty())
       page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
   jobs::sign(page.provenance, a.of.judging, a.of.model, a.of.records);
+  page.handed_in = compare::handed_in(calibrated, compare::followed_events(page.played));
   page.signatures = true;
+  compare::add_report(result, "calibrate", page);
   page.figures = json_text(result);
   write_file(a.of.results().file(kPage), compare::command_html(page));
+  return compare::handed_in_text(*page.handed_in);
 }
 
 void say(const Arguments& a, const nlohmann::json& result, const std::string& text) {
@@ -136,20 +142,18 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector
   const std::string written =
       write_model(a, model, f.model, f.adequate, calibrate::provenance_lines(f, model, a.command));
   nlohmann::json result = calibrate::curve_fit_json(f, truth);
-  result["command"] = a.command;
   result["standard_values"] = model.defaults;
   result["records"] = metadata;
   result["fitness"] = compare::fitness_json(played);
-  result["errors"] = compare::errors_json(played);
   compare::CommandPage page;
   page.complete = f.adequate;
   page.sentence = f.sentence;
   page.played = played;
   page.parameters = jobs::page_parameters(f.parameters, f.model.plant);
   page.use = use_of(a, records);
-  write_page(a, model, std::move(page), result);
+  const std::string usable = write_page(a, model, f.model, std::move(page), result);
   say(a, result,
-      compare::fitness_text(played) +
+      compare::fitness_text(played) + usable +
           compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" +
           compare::error_text(played, use_of(a, records)) + "\n" + written);
   a.of.judging.print(a.of.results().path() / kPage);
@@ -192,20 +196,19 @@ int run_sparse(Arguments& a, const plant::PlantModel& model, const std::vector<r
   const std::string written =
       write_model(a, model, w.model, w.is_adequate(), {"command: " + a.command, w.sentence});
   nlohmann::json result = calibrate::wrong_json(w);
-  result["command"] = a.command;
   result["records"] = metadata;
   result["fitness"] = compare::fitness_json(played);
-  result["errors"] = compare::errors_json(played);
   compare::CommandPage page;
   page.complete = w.is_adequate();
   page.sentence = w.sentence;
   page.played = played;
   page.parameters = jobs::page_parameters(w.found.fit.parameters, w.model.plant);
   page.use = use_of(a, records);
-  write_page(a, model, std::move(page), result);
+  const std::string usable = write_page(a, model, w.model, std::move(page), result);
   say(a, result,
-      compare::fitness_text(played) + compare::complete_text(w.is_adequate(), calibrate::wrong_text(w)) +
-          "\n" + compare::error_text(played, use_of(a, records)) + "\n" + written);
+      compare::fitness_text(played) + usable +
+          compare::complete_text(w.is_adequate(), calibrate::wrong_text(w)) + "\n" +
+          compare::error_text(played, use_of(a, records)) + "\n" + written);
   a.of.judging.print(a.of.results().path() / kPage);
   return played.back().fitness.exit_code(w.is_adequate());
 }
@@ -240,16 +243,12 @@ int run(Arguments& a, plant::PlantModel& model) {
   std::optional<calibrate::CurveFit> curve;
   if (both) curve = fit_curves(a, model, records);
   const auto played = play_both(a, model, c.model, records);
-  std::string text = compare::fitness_text(played) +
-                     compare::complete_text(adequate, calibrate::terminal_report(c)) + "\n" +
+  std::string text = compare::complete_text(adequate, calibrate::terminal_report(c)) + "\n" +
                      compare::error_text(played, use_of(a, records));
   nlohmann::json result = calibrate::calibration_json(c);
-  result["command"] = a.command;
   result["standard_values"] = model.defaults;
   result["records"] = metadata;
   result["fitness"] = compare::fitness_json(played);
-  result["errors"] = compare::errors_json(played);
-  result["statistically_complete"] = adequate;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (curve) {
     plant::write_plant_file(a.of.results().file(kCurveFit), event::whole_model(curve->model),
@@ -272,7 +271,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   page.parameters = jobs::page_parameters(fitted, c.model.plant);
   page.use = use_of(a, records);
   for (const auto& blur : c.blurs) page.tried.push_back(calibrate::describe(c, blur));
-  write_page(a, model, std::move(page), result);
+  text = compare::fitness_text(played) + write_page(a, model, c.model, std::move(page), result) + text;
   text += "\n" + write_model(a, model, c.model, adequate, calibrate::provenance_lines(c, a.command));
   say(a, result, text);
   a.of.judging.print(a.of.results().path() / kPage);

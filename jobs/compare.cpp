@@ -114,15 +114,17 @@ int run(Arguments& a) {
   jobs::sign(rows, a.of.judging, a.of.model, a.of.records);
   for (const auto& e : events)
     write_file(results.file(playback_name(e.record.name)), compare::csv_playback(e));
-  const std::string result = compare::json_report(model, events, adequacy, fitness, rows);
+  const compare::HandedIn handed = compare::handed_in(model, events);
+  const std::string result = compare::json_report(model, events, adequacy, fitness, handed, rows);
   write_file(results.file(kResult), result);
   const auto page = results.file(kPage);
-  write_file(page, compare::html_report(model, events, adequacy, fitness, rows));
+  write_file(page, compare::html_report(model, events, adequacy, fitness, handed, rows));
   results.finish();
   if (a.of.json)
     fmt::print("{}", result);
   else
-    fmt::print("{}\nreport: {}\n", compare::terminal_report(model, events, adequacy, fitness, a.of.verbose),
+    fmt::print("{}\nreport: {}\n",
+               compare::terminal_report(model, events, adequacy, fitness, handed, a.of.verbose),
                page.string());
   a.of.judging.print(page);
   return fitness.exit_code(adequacy.adequate);

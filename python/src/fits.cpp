@@ -80,7 +80,7 @@ void bind_calibration(py::module_& module) {
       .def(
           "to_dict",
           [](const Calibration& c) { return from_json(json_text(calibrate::calibration_json(c))); },
-          "Returns the content of calibrate.json.")
+          "Returns what the fit adds to calibrate.json.")
       .def("_repr_html_", [](const Calibration& c) { return html_of(c); })
       .def("__str__", [](const Calibration& c) { return calibrate::terminal_report(c); })
       .def("__repr__", [](const Calibration& c) { return "<swingbank.Calibration: " + c.sentence + ">"; });
@@ -103,7 +103,7 @@ void bind_addition(py::module_& module) {
       .def_readonly("seconds", &Addition::seconds, "Processing time [s].")
       .def(
           "to_dict", [](const Addition& a) { return from_json(json_text(add::addition_json(a))); },
-          "Returns the content of add.json.")
+          "Returns what the addition adds to add.json.")
       .def("_repr_html_", [](const Addition& a) { return html_of(a); })
       .def("__str__", [](const Addition& a) { return add::terminal_report(a); })
       .def("__repr__", [](const Addition& a) { return "<swingbank.Addition: " + a.sentence + ">"; });

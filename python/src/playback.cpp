@@ -78,13 +78,13 @@ std::vector<EventComparison> events_of(const Comparison& c) {
 
 std::string json_of(const Comparison& c) {
   const auto events = events_of(c);
-  return compare::json_report(*c.plant, events, c.adequacy, c.fitness,
+  return compare::json_report(*c.plant, events, c.adequacy, c.fitness, compare::handed_in(*c.plant, events),
                               compare::provenance(*c.plant, events, "swingbank.Plant.compare"));
 }
 
 std::string page_of(const Comparison& c) {
   const auto events = events_of(c);
-  return compare::html_report(*c.plant, events, c.adequacy, c.fitness,
+  return compare::html_report(*c.plant, events, c.adequacy, c.fitness, compare::handed_in(*c.plant, events),
                               compare::provenance(*c.plant, events, "swingbank.Plant.compare"));
 }
 

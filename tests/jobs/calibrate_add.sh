@@ -2,7 +2,14 @@
 # swingbank calibrate and add: output files, exit codes, and one message for each bad input.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
-model=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
+model=$work/plant.toml
+cat "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" - >"$model" <<'TOML'
+[nameplate]
+owner = "A & B"
+recorded = "2026-03-01"
+[nameplate.exciter]
+manufacturer = "ABC"
+TOML
 records=$SWINGBANK_SOURCE/configs/records/record-example
 one=$records/avr_ev1.csv two=$records/avr_ev2.csv
 export OMP_NUM_THREADS=2
@@ -18,6 +25,11 @@ assert r["effect"] == "SEXS" and r["earns_its_place"] and r["adequate"], r["sent
 seen, unseen = r["events"]
 assert (seen["record"], seen["seen"], unseen["seen"]) == ("avr_ev1.csv", True, False)
 assert [e["use"] for e in r["events"]] == ["fit", "verification"]
+assert r["nameplate"]["given"] == {"owner": "A & B", "recorded": "2026-03-01", "exciter.manufacturer": "ABC"}, r["nameplate"]
+assert "exciter.model" in r["nameplate"]["missing"] and "governor.model" not in r["nameplate"]["missing"], r["nameplate"]
+u = r["usability"]
+assert u["usable"] and "SEXS" in u["step"] and len(u["operating_points"]) == 2, u
+assert all(0 < o["oscillation"]["damping_ratio"] < 1 and 0.1 < o["oscillation"]["frequency_hz"] < 5 for o in u["operating_points"]), u
 assert unseen["misfit_before"] > 100 * unseen["misfit_after"]
 assert [e["unit"] for e in r["errors"] if e["model"] == "submitted" and e["record"] == "avr_ev2.csv"] == ["MW", "Mvar"]
 PYTHON
@@ -36,10 +48,12 @@ for event in compared["events"]:
         assert own["noise"] == c["noise_pu"] * c["units_in_pu"], own
         assert abs(own["rms_over_noise"] - own["rms"] / own["noise"]) < 1e-9 * own["rms_over_noise"], own
 PYTHON
-for words in 'Added effect' 'evidence' 'event 1 (fit)' 'event 2 (verification)' 'completed' \
-  'verified by the independent event avr_ev2.csv'; do
+for words in 'Added effect' 'evidence' 'event 1 (fit)' 'event 2 (verification)' 'completed' 'Model information' 'A &amp; B' \
+  'verified by the independent event avr_ev2.csv' 'the step response is damped' '<section class="signatures">'; do
   grep -qF -- "$words" "$work/added/report.html" || fail "'$words' is not on the page"
 done
+grep -q '^owner = "A & B"' "$work/added/model.toml" || fail "the new model has lost its nameplate"
+grep -q '^// Excitation system, manufacturer: ABC' "$work/added/model.dyr" || fail "the records have lost the nameplate"
 grep -q '^effect = "SEXS"' "$work/added/model.toml" || fail "the new model has no SEXS"
 grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the new model does not say where it comes from"
 
@@ -55,6 +69,7 @@ grep -q '^// changed or new: GENROU, SEXS' "$work/numbered/model.dyr" || fail "t
 cmp <("$swingbank" export --model "$work/numbered/model.toml" | grep -v '^//') <(grep -v '^//' "$work/numbered/model.dyr") || fail "model.dyr is not what export makes"
 grep -q 'SEXS.K' "$work/text" || fail "the table lacks the exciter's gain"
 grep -q 'no independent event verifies the fit' "$work/again/report.html" || fail "the page does not say that no event was held out"
+grep -q '^Usability: Initialises; the step response is damped' "$work/text" || fail "no usability on the terminal"
 
 # given switching times are used unchanged
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --switch avr_ev1.csv=2 --switch avr_ev1.csv=2.1 --power-only \
@@ -76,6 +91,9 @@ assert [e["seen"] for e in curve["events"]] == [True, False] and r["curve_fit"][
 PYTHON
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" --method curve-fit --json --out "$work/curves" >"$work/printed.json" || (($? == 3))
 cmp "$work/printed.json" "$work/curves/calibrate.json" || fail "--json prints something else than it writes"
+fits_schema "$work/added/add.json" "$work/before/compare.json" "$work/again/calibrate.json" "$work/both/calibrate.json" "$work/curves/calibrate.json"
+sed 's/"use": *"fit"/"use": "fitted"/' "$work/added/add.json" >"$work/altered.json"
+(fits_schema "$work/altered.json") 2>/dev/null && fail "the schema accepts an unknown use"
 
 # without the exciter the structure is inadequate: exit code 3, and the files are written nevertheless
 status=0

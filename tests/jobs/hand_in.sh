@@ -1,10 +1,25 @@
 #!/usr/bin/env bash
-# What is handed in: signatures of the reports; faulty nameplates.
+# What is handed in: nameplate, usability and signatures of the reports; models that cannot be checked; faulty nameplates.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 # shellcheck disable=SC2154 # set by verdict.bash
 source "$(dirname "${BASH_SOURCE[0]}")/verdict.bash"
 
-gives 3 '^Fit for purpose: no' compare --model "$bent"
+# an own plant: nothing given, all missing; a given field is on page, terminal and JSON
+gives 3 '^Missing under \[nameplate\] of .*: owner, plant, unit, mva, kv, recorded, machine.manufacturer' compare --model "$bent"
+cat "$bent" - >"$work/named.toml" <<'TOML'
+[nameplate]
+owner = "Ä <b> \"x\""
+mva = 100
+commissioned = "1998-11"
+[nameplate.machine]
+serial = "0815"
+TOML
+gives 3 '^Usability: ' compare --model "$work/named.toml"
+for words in 'Ä &lt;b&gt; &quot;x&quot;' '100 MVA' '1998-11' '0815' '>missing<' 'Usability</h2>' '<section class="signatures">'; do
+  grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page"
+done
+fits_schema "$work/out/compare.json"
+"$swingbank" export --model "$work/named.toml" --bus 2 | holds -q '^// Generator, serial number: 0815' || fail "export loses the nameplate"
 
 # signatures are on paper only, and the page is no wider than a phone
 if command -v chromium >/dev/null; then

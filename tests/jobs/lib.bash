@@ -56,6 +56,19 @@ leaves_nothing() {
   [[ -z $left ]] || fail "left behind: $left"
 }
 
+# fits_schema FILE...: JSON results have the common part that docs/reference/report.schema.json describes
+fits_schema() {
+  python3 - "$SWINGBANK_SOURCE/docs/reference/report.schema.json" "$@" <<'PYTHON' || fail "not as the schema describes it"
+import json, sys
+import jsonschema
+schema, *files = [json.load(open(f)) for f in sys.argv[1:]]
+jsonschema.Draft7Validator.check_schema(schema)
+for name, result in zip(sys.argv[2:], files):
+    for fault in jsonschema.Draft7Validator(schema).iter_errors(result):
+        sys.exit(f"{name}: {'/'.join(map(str, fault.absolute_path))}: {fault.message}")
+PYTHON
+}
+
 # An error message is one sentence: "<what> at <where> (<why>): <what to do>".
 sentence='.+ at .+ \(.+\): .+'
 

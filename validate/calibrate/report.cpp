@@ -162,11 +162,7 @@ json event_json(const EventScore& e) {
 }
 
 json calibration_json(const Calibration& c) {
-  json j = {{"format", "swingbank-calibrate-3"},
-            {"version", SWINGBANK_VERSION},
-            {"model", c.model.origin},
-            {"model_sha256", c.model.sha256},
-            {"verdict", adequacy_name(c.adequacy)},
+  json j = {{"verdict", adequacy_name(c.adequacy)},
             {"adequacy", thresholds::ruling_json(c.ruling)},
             {"sentence", c.sentence},
             {"misfit_before", c.before},

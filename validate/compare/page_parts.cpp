@@ -150,9 +150,7 @@ FirstScreen screen_of(const CommandPage& p) {
   FirstScreen s;
   const Fitness& fitness = p.played.back().fitness;
   const bool several = p.played.size() > 1;
-  s.headline = !p.headline.empty()
-                   ? p.headline
-                   : headline(p.complete, fitness, several ? model_title(p.played.back().name) : "Model");
+  s.headline = headline_of(p);
   s.reasons = {fitness.not_judged.empty()
                    ? (several ? model_title(p.played.back().name) + ". " : "") + fitness.sentence
                    : complete_text(p.complete, p.sentence)};
@@ -282,6 +280,12 @@ void glossary_part(report::Document& page) {
   page.add(report::End{});
 }
 
+std::string headline_of(const CommandPage& p) {
+  if (!p.headline.empty()) return p.headline;
+  const std::string model = p.played.size() > 1 ? model_title(p.played.back().name) : "Model";
+  return headline(p.complete, p.played.back().fitness, model);
+}
+
 std::string command_html(const CommandPage& p) {
   report::Document page{p.title, p.subtitle};
   first_screen(page, screen_of(p));
@@ -289,10 +293,12 @@ std::string command_html(const CommandPage& p) {
   page.add(report::Verdict{complete_text(p.complete, p.sentence),
                            p.complete ? report::Tone::good : report::Tone::bad});
   limits_part(page, p.played);
+  if (p.handed_in) usability_part(page, *p.handed_in);
   maps_part(page, p.played);
   if (!p.tried.empty()) page.section("Hypotheses");
   for (const auto& sentence : p.tried) page.text(sentence);
   panels_part(page, p.played);
+  if (p.handed_in) nameplate_part(page, *p.handed_in);
   parameters_part(page, p.parameters);
   errors_part(page, p.played, p.use);
   glossary_part(page);

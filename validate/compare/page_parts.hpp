@@ -1,10 +1,12 @@
 #pragma once
-// Parts that the reports of all commands share. Their order is: first screen, limits, error maps, hypotheses,
-// panels of the events, parameters, errors, glossary, provenance, signatures.
+// Parts that the reports of all commands share. Their order is: first screen, limits, usability, error maps,
+// hypotheses, panels of the events, model information, parameters, errors, glossary, provenance, signatures.
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "validate/compare/event_use.hpp"
+#include "validate/compare/handed_in.hpp"
 #include "validate/compare/played.hpp"
 #include "validate/report/document.hpp"
 
@@ -37,19 +39,22 @@ void glossary_part(report::Document& page);
 
 /// Content of a page that consists of the shared parts only; `tried` is its list of hypotheses.
 struct CommandPage {
-  std::string title, subtitle;            ///< heading; line below it
-  std::string headline = {};              ///< verdict in at most eight words; empty: that of compare
-  std::string next = {};                  ///< next command; empty: none
-  bool complete = false;                  ///< statistically complete: the residual is noise
-  std::string sentence;                   ///< verdict in words
-  std::vector<Played> played;             ///< models with their comparisons, in order
-  std::vector<PageParameter> parameters;  ///< table of parameters; may be empty
-  EventUse use = {};                      ///< events of the fit and of its verification
-  std::vector<std::string> tried;         ///< tried hypotheses
+  std::string title, subtitle;             ///< heading; line below it
+  std::string headline = {};               ///< verdict in at most eight words; empty: that of compare
+  std::string next = {};                   ///< next command; empty: none
+  bool complete = false;                   ///< statistically complete: the residual is noise
+  std::string sentence;                    ///< verdict in words
+  std::vector<Played> played;              ///< models with their comparisons, in order
+  std::vector<PageParameter> parameters;   ///< table of parameters; may be empty
+  EventUse use = {};                       ///< events of the fit and of its verification
+  std::vector<std::string> tried;          ///< tried hypotheses
+  std::optional<HandedIn> handed_in = {};  ///< model that is handed in; none: no such parts
   bool signatures = false;                 ///< blank lines for owner and reviewer in print
-  report::Provenance provenance;          ///< inputs and software of the run
-  std::string figures;                    ///< JSON
+  report::Provenance provenance;           ///< inputs and software of the run
+  std::string figures;                     ///< JSON
 };
+/// Returns the page's verdict in at most eight words.
+std::string headline_of(const CommandPage& page);
 /// Returns the page as HTML.
 std::string command_html(const CommandPage& page);
 

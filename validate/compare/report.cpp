@@ -14,6 +14,7 @@
 #include "validate/compare/event_title.hpp"
 #include "validate/compare/first_screen.hpp"
 #include "validate/compare/page_parts.hpp"
+#include "validate/compare/report_json.hpp"
 #include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::compare {
@@ -94,13 +95,38 @@ nlohmann::json to_json(const EventComparison& e) {
   return j;
 }
 
+/// Returns the page of a comparison, without its JSON.
+CommandPage page_of(const plant::PlantModel& model, const std::vector<EventComparison>& events,
+                    const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,
+                    const report::Provenance& rows) {
+  CommandPage page;
+  page.title = "Measured against modelled: " + model.name;
+  page.subtitle = fmt::format(
+      "{} of {:g} MVA; the recorded {} into the model, and its response is compared with the recording.",
+      plant::subject(model), model.plant.mva,
+      model.whole                         ? "signals around it are played"
+      : events.front().playback.P.empty() ? "P and Q are played"
+                                          : "terminal voltage is played");
+  page.complete = adequacy.adequate;
+  page.sentence = adequacy.sentence;
+  page.played = {{"model", events, fitness}};
+  page.handed_in = handed;
+  page.signatures = true;
+  page.parameters = parameters_of(model.plant);
+  page.provenance = rows;
+  if (!adequacy.adequate) page.next = next_command(rows, "diagnose");
+  return page;
+}
+
 }  // namespace
 
 report::Table error_map(const std::vector<EventComparison>& events) { return map_table(maps_of(events)); }
 
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                            const Adequacy& adequacy, const Fitness& fitness, bool verbose) {
-  std::string out = fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n";
+                            const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,
+                            bool verbose) {
+  std::string out = fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n" +
+                    handed_in_text(handed);
   if (!adequacy.adequate)
     out += "Next: swingbank diagnose, with the same options, names what the model lacks.\n";
   out += fmt::format("\n{} ({}): measured against modelled\n\n", model.name, plant::subject(model)) +
@@ -128,25 +154,21 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
 }
 
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                        const Adequacy& adequacy, const Fitness& fitness, const report::Provenance& rows) {
-  nlohmann::json j = {
-      {"format", "swingbank-compare-5"},
-      {"adequate", adequacy.adequate},
-      {"statistically_complete", adequacy.adequate},
-      {"fitness", fitness_json(fitness)},
-      {"verdict", adequacy.sentence},
-      {"adequacy", thresholds::ruling_json(adequacy.ruling)},
-      {"cells", adequacy.bins},
-      {"cells_exceeding", adequacy.exceeding},
-      {"cells_telling_nothing", adequacy.vague},
-      {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
-      {"model",
-       {{"name", model.name}, {"file", model.origin}, {"sha256", model.sha256}, {"mva", model.plant.mva}}},
-      {"base_mva", model.record_base.mva},
-      {"frequency_hz", model.record_base.frequency}};
+                        const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,
+                        const report::Provenance& rows) {
+  nlohmann::json j = {{"adequate", adequacy.adequate},
+                      {"fitness", fitness_json(fitness)},
+                      {"verdict", adequacy.sentence},
+                      {"adequacy", thresholds::ruling_json(adequacy.ruling)},
+                      {"cells", adequacy.bins},
+                      {"cells_exceeding", adequacy.exceeding},
+                      {"cells_telling_nothing", adequacy.vague},
+                      {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
+                      {"base_mva", model.record_base.mva},
+                      {"frequency_hz", model.record_base.frequency}};
   j["events"] = nlohmann::json::array();
   for (const auto& e : events) j["events"].push_back(to_json(e));
-  for (const auto& [name, value] : rows) j["provenance"].push_back({{"what", name}, {"value", value}});
+  add_report(j, "compare", page_of(model, events, adequacy, fitness, handed, rows));
   return json_text(j, 2) + "\n";
 }
 
@@ -165,23 +187,10 @@ std::string csv_playback(const EventComparison& e) {
 }
 
 std::string html_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                        const Adequacy& adequacy, const Fitness& fitness, const report::Provenance& rows) {
-  CommandPage page;
-  page.title = "Measured against modelled: " + model.name;
-  page.subtitle = fmt::format(
-      "{} of {:g} MVA; the recorded {} into the model, and its response is compared with the recording.",
-      plant::subject(model), model.plant.mva,
-      model.whole                         ? "signals around it are played"
-      : events.front().playback.P.empty() ? "P and Q are played"
-                                          : "terminal voltage is played");
-  page.complete = adequacy.adequate;
-  page.sentence = adequacy.sentence;
-  page.played = {{"model", events, fitness}};
-  page.parameters = parameters_of(model.plant);
-  page.provenance = rows;
-  page.signatures = true;
-  if (!adequacy.adequate) page.next = next_command(rows, "diagnose");
-  page.figures = json_report(model, events, adequacy, fitness, rows);
+                        const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,
+                        const report::Provenance& rows) {
+  CommandPage page = page_of(model, events, adequacy, fitness, handed, rows);
+  page.figures = json_report(model, events, adequacy, fitness, handed, rows);
   return command_html(page);
 }
 

@@ -5,6 +5,7 @@
 
 #include "validate/compare/compare.hpp"
 #include "validate/compare/fitness.hpp"
+#include "validate/compare/handed_in.hpp"
 #include "validate/report/document.hpp"
 
 namespace swingbank::validate::compare {
@@ -12,18 +13,19 @@ namespace swingbank::validate::compare {
 /// Table of the normalised RMS per event, channel, window and band, and of the RMS per window in units.
 report::Table error_map(const std::vector<EventComparison>& events);
 
-/// Terminal text: verdicts, next step, errors, titles and notes; with `verbose` also every table.
+/// Terminal text: verdicts, usability, next step, errors, titles and notes; with `verbose` also every table.
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                            const Adequacy& adequacy, const Fitness& fitness, bool verbose);
-/// JSON of everything but the samples; values in pu, with bases and units.
+                            const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,
+                            bool verbose);
+/// JSON of everything but the samples, with add_report(); values in pu, with bases and units.
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                        const Adequacy& adequacy, const Fitness& fitness,
+                        const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,
                         const report::Provenance& provenance);
 /// CSV of the samples of one event: t, V, theta, and every channel measured and simulated.
 std::string csv_playback(const EventComparison& event);
 /// Self-contained page: verdicts, tables, curves, residuals, provenance.
 std::string html_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
-                        const Adequacy& adequacy, const Fitness& fitness,
+                        const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,
                         const report::Provenance& provenance);
 
 /// Command line, version, model, conventions, default parameter values and records.

@@ -94,6 +94,7 @@ nlohmann::json save(const Session& session, int step, OutputFolder& folder,
   }
   page.parameters = changed(setup, last);
   page.use = {!last.intervals.empty() || !last.held_out.empty(), last.held_out};
+  page.handed_in = compare::handed_in(last.model, last.played->events);
   page.provenance = provenance;
   page.figures = json_text(
       {{"format", "swingbank-live-1"}, {"steps", head}, {"fitness", compare::fitness_json(page.played)}});

@@ -8,6 +8,7 @@
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/error_table.hpp"
 #include "validate/compare/first_screen.hpp"
+#include "validate/compare/report_json.hpp"
 #include "validate/report/assets.hpp"
 #include "validate/report/figures.hpp"
 
@@ -15,6 +16,8 @@ namespace swingbank::validate::compare {
 namespace {
 
 using ::testing::HasSubstr;
+
+HandedIn handed(const std::vector<EventComparison>& events) { return handed_in(example_model(), events); }
 
 /// The number at the beginning of a cell.
 double number_in(const report::Cell& cell) { return std::stod(cell.text); }
@@ -36,7 +39,7 @@ TEST(ErrorTable, PrintedRatio_IsThePrintedRmsOverThePrintedNoise) {
   const auto& q = events[0].channels[1];
   EXPECT_DOUBLE_EQ(json[1]["rms"], q.whole.rms * q.scale);
   EXPECT_DOUBLE_EQ(json[1]["rms_over_noise"], q.whole.rms / q.noise);
-  EXPECT_THAT(terminal_report(example_model(), events, judge(events), fitness, false),
+  EXPECT_THAT(terminal_report(example_model(), events, judge(events), fitness, handed(events), false),
               HasSubstr(report::padded(error_table({{"", events, fitness}}))));
 }
 
@@ -44,7 +47,7 @@ TEST(CompareReportTest, JsonContainsTheNumbers) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
   const auto j = nlohmann::json::parse(
-      json_report(example_model(), events, adequacy, fitness_of(events), {{"command", "x"}}));
+      json_report(example_model(), events, adequacy, fitness_of(events), handed(events), {{"command", "x"}}));
   EXPECT_EQ(j["events"][0]["channels"][1]["name"], "Q");
   EXPECT_DOUBLE_EQ(j["events"][0]["channels"][1]["whole"]["rms_pu"], events[0].channels[1].whole.rms);
   EXPECT_EQ(j["events"][0]["channels"][1]["windows"].size(), 5u);
@@ -56,6 +59,23 @@ TEST(CompareReportTest, JsonContainsTheNumbers) {
   EXPECT_TRUE(map[1]["normalised_rms"].is_null());  // 2 s contain no frequency below 0.1 Hz
   EXPECT_EQ(j["adequate"], false);
 }
+TEST(CompareReportTest, JsonHasTheCommonPartOfAllCommands) {
+  std::vector<EventComparison> events = {example_event()};
+  const Adequacy adequacy = judge(events);
+  const auto j = nlohmann::json::parse(json_report(example_model(), events, adequacy, fitness_of(events),
+                                                   handed(events), {{"command", "swingbank compare"}}));
+  EXPECT_EQ(j["format"], kReportFormat);
+  EXPECT_EQ(j["kind"], "compare");
+  EXPECT_EQ(j["command"], "swingbank compare");
+  EXPECT_EQ(j["events"][0]["use"], "comparison");
+  EXPECT_EQ(j["events"].size(), 1U);
+  EXPECT_EQ(j["model"]["mva"], example_model().plant.mva);
+  EXPECT_EQ(j["errors"][0]["unit"], "MW");
+  EXPECT_EQ(j["usability"]["operating_points"][0]["record"], events[0].record.name);
+  EXPECT_EQ(j["usability"]["usable"], true);
+  EXPECT_EQ(j["nameplate"]["missing"][0], "owner");
+}
+
 TEST(EventUseTest, TellsFitFromVerification) {
   const EventUse none{}, alone{true, {}}, held{true, {"b.csv"}};
   EXPECT_EQ(none.of("a.csv"), "comparison");
@@ -73,10 +93,32 @@ TEST(EventUseTest, TellsFitFromVerification) {
   EXPECT_EQ(table.rows[0][2].text, "verification");
 }
 
+TEST(HandedInTest, PageShowsNameplateUsabilityAndSignatures) {
+  std::vector<EventComparison> events = {example_event()};
+  const Adequacy adequacy = judge(events);
+  plant::PlantModel model = example_model();
+  model.nameplate.values = {{"owner", std::string("A & B")}, {"kv", 13.8}};
+  const HandedIn in = handed_in(model, events);
+  const std::string html = html_report(model, events, adequacy, fitness_of(events), in, {{"command", "x"}});
+  EXPECT_THAT(html, HasSubstr("Model information</h2>"));
+  EXPECT_THAT(html, HasSubstr("A &amp; B"));
+  EXPECT_THAT(html, HasSubstr("13.8 kV"));
+  EXPECT_THAT(html, HasSubstr("missing</td>"));
+  EXPECT_THAT(html, HasSubstr("Missing under [nameplate] of " + report::escape(model.origin) +
+                              ": plant, unit, mva,"));
+  EXPECT_THAT(html, HasSubstr("Initialises; the step response is damped."));
+  EXPECT_THAT(html, HasSubstr("<section class=\"signatures\">"));
+  const auto j = nlohmann::json::parse(json_report(model, events, adequacy, fitness_of(events), in, {}));
+  EXPECT_EQ(j["nameplate"]["given"], (nlohmann::json{{"owner", "A & B"}, {"kv", 13.8}}));
+  EXPECT_THAT(
+      handed_in_text(in),
+      HasSubstr("Usability: Initialises; the step response is damped; drift in 10 s < 1e-05 % of MVA"));
+}
+
 TEST(CompareReportTest, PageLoadsNothingExternal) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
-  const std::string html = html_report(example_model(), events, adequacy, fitness_of(events),
+  const std::string html = html_report(example_model(), events, adequacy, fitness_of(events), handed(events),
                                        provenance(example_model(), events, "swingbank compare <x>"));
   std::string own = html;
   for (const char* file : {"uPlot.iife.min.js", "uPlot.min.css"}) {
@@ -102,7 +144,7 @@ TEST(CompareReportTest, FirstScreenLinksEachChannelToItsChart) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
   const Fitness fitness = fitness_of(events);
-  const std::string html = html_report(example_model(), events, adequacy, fitness,
+  const std::string html = html_report(example_model(), events, adequacy, fitness, handed(events),
                                        {{"command", "swingbank compare --model m --out o --records r"}});
   EXPECT_THAT(html, HasSubstr("Model does not match the records"));
   EXPECT_THAT(html, HasSubstr("<code>swingbank diagnose --model m --records r</code>"));
@@ -147,7 +189,8 @@ TEST(CompareReportTest, MapCellsShowPercentOfMvaAndNoise) {
 TEST(CompareReportTest, TerminalReportHasUnits) {
   std::vector<EventComparison> events = {example_event()};
   const Adequacy adequacy = judge(events);
-  const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events), true);
+  const std::string text =
+      terminal_report(example_model(), events, adequacy, fitness_of(events), handed(events), true);
   for (const char* word : {" MW", " Mvar", " mHz", "noise", "Not adequate", "avr_ev1.csv"})
     EXPECT_THAT(text, HasSubstr(word));
 }
@@ -157,7 +200,8 @@ TEST(CompareReportTest, TerminalReport_PrintsVerdictFirstAndEachNoteOnce) {
   for (auto& e : events) e.notes = {"a note of both"};
   events[1].notes.push_back("a note of one");
   const Adequacy adequacy = judge(events);
-  const std::string text = terminal_report(example_model(), events, adequacy, fitness_of(events), false);
+  const std::string text =
+      terminal_report(example_model(), events, adequacy, fitness_of(events), handed(events), false);
   EXPECT_THAT(text, ::testing::StartsWith("Fit for purpose: "));
   EXPECT_THAT(text, HasSubstr("note (all events): a note of both\nnote (other.csv): a note of one\n"));
   EXPECT_THAT(text, ::testing::Not(HasSubstr("In units of noise")));

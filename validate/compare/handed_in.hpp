@@ -1,0 +1,33 @@
+#pragma once
+// Model that is handed in: its nameplate and usability, as parts of a report.
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "validate/compare/compare.hpp"
+#include "validate/plant/plant_model.hpp"
+#include "validate/report/document.hpp"
+#include "validate/usability/usability.hpp"
+
+namespace swingbank::validate::compare {
+
+/// Model that is handed in, with what a verification report states of it.
+struct HandedIn {
+  std::string name, file, sha256;  ///< name; the plant file that the command read, and its hash
+  double mva = 0;                  ///< machine base [MVA]
+  std::vector<plant::NameplateLine> nameplate = {};  ///< given and missing fields
+  usability::Usability usability = {};               ///< at the operating points of the events
+};
+/// Returns the nameplate of the model and its usability at the operating points of the events.
+HandedIn handed_in(const plant::PlantModel& model, const std::vector<EventComparison>& events);
+
+/// Adds the section with the nameplate; missing fields are listed as "missing".
+void nameplate_part(report::Document& page, const HandedIn& model);
+/// Adds the section with verdict and figures of the usability check.
+void usability_part(report::Document& page, const HandedIn& model);
+/// Returns both as terminal text: verdict and largest figures of the usability, and the missing fields.
+std::string handed_in_text(const HandedIn& model);
+/// Returns given and missing fields of the nameplate as JSON; dates and texts as text, ratings as numbers.
+nlohmann::json nameplate_json(const HandedIn& model);
+
+}  // namespace swingbank::validate::compare
