@@ -98,6 +98,7 @@ network::Event step_of(const Plant& plant, Complex voltage) {
 struct Deviation {
   std::vector<std::vector<double>> of;  ///< [P, Q][sample], without the operating point itself
   bool stable = false;                  ///< the run reached its end in synchronism
+  double until = 0;                     ///< end of the run [s]
   [[nodiscard]] double largest(std::size_t signal) const {
     double most = 0;
     for (const double v : of[signal]) most = std::max(most, std::abs(v));
@@ -126,6 +127,7 @@ Deviation simulate(const sim::grid::Grid& grid, const network::Event& event) {
   const auto run = sim::reference::run_reference(grid, event, options);
   Deviation d;
   d.stable = run.outcome == sim::Outcome::stable;
+  d.until = run.stopped_at;
   for (int c = 0; c < 2; ++c) {
     const double* y = run.at(0, c);
     auto& deviation = d.of.emplace_back();
@@ -142,6 +144,11 @@ UsabilityAt check_at(const plant::PlantModel& model, const Plant& plant, const O
     sim::plant::operating_point(grid.plants.front(), state.voltage, grid.network.base_mva, grid.conventions);
     at.initialises = true;
     const Deviation still = simulate(grid, {});
+    if (!still.stable) {
+      at.failure = fmt::format("without a disturbance the simulation ends after {:.3g} s of {:g} s",
+                               still.until, kStudyDuration);
+      return at;
+    }
     at.drift_P = kPercent * still.largest(0);
     at.drift_Q = kPercent * still.largest(1);
     const Deviation moved = simulate(grid, step_of(plant, state.voltage));

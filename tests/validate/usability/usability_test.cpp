@@ -124,6 +124,15 @@ TEST(Usability, DriftOfAModelThatMovesByItselfIsMeasured) {
   EXPECT_GT(u.at[0].drift_P, 0.01);
 }
 
+TEST(Usability, ModelThatLosesSynchronismByItselfCannotBeSimulated) {
+  plant::PlantModel model = example();
+  model.plant.controls = {effect("FORCEDOSC", {{"amplitude", 5.0}})};
+  const Usability u = check_usability(model, {loaded()});
+  EXPECT_TRUE(u.at[0].initialises);
+  EXPECT_THAT(u.at[0].failure, HasSubstr("without a disturbance the simulation ends after "));
+  EXPECT_EQ(u.verdict(), "Cannot be simulated at every operating point");
+}
+
 TEST(Usability, EventsOwnReferenceStepsAndInstrumentsAreLeftOut) {
   plant::PlantModel model = example();
   model.plant.controls = {effect("VREFSTEP", {{"amount", 0.05}, {"start", 2.0}}), effect("SEXS")};
