@@ -99,8 +99,8 @@ void shade_worst(report::Curves& c, const FirstScreen& s, std::size_t event, con
 void large_charts(report::Document& document, const FirstScreen& s) {
   const auto [event, channels] = worst_event(*s.before);
   std::vector<report::Curves> charts;
-  document.subsection(fmt::format("Event {}: {}, {}", event + 1, s.before->events[event].record.name,
-                                  event_title(s.before->events[event])));
+  const EventComparison& last = (s.after ? s.after : s.before)->events[event];
+  document.subsection(fmt::format("Event {}: {}, {}", event + 1, last.record.name, event_title(last)));
   for (const auto& name : channels) {
     charts.push_back(channel_curves(
         {{s.before, s.after ? report::Ink::submitted : report::Ink::fitted}, {s.after, report::Ink::fitted}},
