@@ -6,7 +6,8 @@ make_packages() {
   local build
   build=$(cd "$SWINGBANK_BIN/.." && pwd)
   mkdir -p "$1"
-  (cd "$1" && cpack --config "$build/CPackConfig.cmake" -G DEB -B "$1") >"$work/cpack" 2>&1 || fail "cpack: $(tail -n 20 "$work/cpack")"
+  (cd "$1" && cpack --config "$build/CPackConfig.cmake" -G DEB -B "$1") >"$work/cpack" 2>&1 ||
+    fail "cpack: $(tail -n 20 "$work/cpack")"
   rm -r "$1/_CPack_Packages"
 }
 
@@ -20,7 +21,8 @@ check() {
 first_comparison() {
   local example status=0
   cp -r "$(swingbank configs)" .
-  read -r -a example < <(sed -n 's/^swingbank compare \(--model .*\) --out comparison$/\1/p' "$SWINGBANK_SOURCE/README.md")
+  read -r -a example < \
+    <(sed -n 's/^swingbank compare \(--model .*\) --out comparison$/\1/p' "$SWINGBANK_SOURCE/README.md")
   ((${#example[@]} == 4)) || fail "the README's example is not found: ${example[*]}"
   # shellcheck disable=SC2068 # the pattern expands to the files
   swingbank compare ${example[@]} --out comparison >"$work/compare" 2>&1 || status=$?

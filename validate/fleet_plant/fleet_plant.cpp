@@ -19,10 +19,10 @@ namespace swingbank::validate::fleet_plant {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
 using fleet::Fleet;
 using fleet::FleetPlant;
 using fleet::FleetRow;
+using nlohmann::json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
