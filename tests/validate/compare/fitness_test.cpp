@@ -82,7 +82,7 @@ TEST(Fitness, MissingResponse_FailsByItsMovement_WhenEveryLimitOfMvaHolds) {
   ASSERT_EQ(f.movements.size(), 1U);
   EXPECT_NEAR(f.movements[0].error, 100, 1e-9);
   EXPECT_NEAR(f.movements[0].share, 0, 1e-9);
-  EXPECT_THAT(f.sentence, HasSubstr("no. 1 of 19 errors"));
+  EXPECT_THAT(f.sentence, HasSubstr("no (1 of 19 errors"));
   EXPECT_THAT(f.sentence, HasSubstr("(limit 25 %); the modelled movement is 0 % of"));
   const Fitness most = judge_fitness({governor_event(0.8)}, 50, plain_limits());
   EXPECT_TRUE(most.fit) << most.sentence;
@@ -112,7 +112,7 @@ TEST(Fitness, AcceptsErrorAtTheLimit) {
   exact.limits[0][1].mxe = std::nextafter(at, 0.0);
   const Fitness f = judge_fitness({e}, 50, exact);
   EXPECT_FALSE(f.fit);
-  EXPECT_THAT(f.sentence, HasSubstr("no. 1 of 18 errors"));
+  EXPECT_THAT(f.sentence, HasSubstr("no (1 of 18 errors"));
   EXPECT_THAT(f.sentence, HasSubstr("MXE of P in the fault window of one.csv"));
 }
 
@@ -163,7 +163,7 @@ TEST(Fitness, RejectsNaN) {
     const auto e = event_off_by([&](double t) { return t == 2.0 ? bad : 0.0; });
     const Fitness f = judge_fitness({e}, 50, plain_limits());
     EXPECT_FALSE(f.fit);
-    EXPECT_THAT(f.sentence, HasSubstr("no. 3 of 18 errors"));
+    EXPECT_THAT(f.sentence, HasSubstr("no (3 of 18 errors"));
     EXPECT_EQ(f.exit_code(true), 5);
     EXPECT_TRUE(fitness_json(f).at("errors_percent_of_mva").at(2).at("mae").is_null());
     EXPECT_THAT(report::padded(worst_fitness_table(f)), HasSubstr("not finite *"));
