@@ -19,14 +19,13 @@
 namespace swingbank::train::loop {
 namespace {
 
-constexpr std::string_view kHeading = "epoch,training_loss,validation_loss,learning_rate,seconds\n";
+constexpr std::string_view kHeading = "epoch,training_loss,validation_loss,learning_rate\n";
 
 std::string csv_lines(const LearningCurve& curve, std::size_t begin) {
   std::string text;
   for (std::size_t k = begin; k < curve.size(); ++k) {
     const EpochErrors& e = curve[k];
-    text +=
-        fmt::format("{},{},{},{},{:.1f}\n", e.epoch, e.training, e.validation, e.learning_rate, e.seconds);
+    text += fmt::format("{},{},{},{}\n", e.epoch, e.training, e.validation, e.learning_rate);
   }
   return text;
 }
@@ -59,9 +58,9 @@ std::string record(const std::string& event) {
   const std::string length = bytes_of<std::uint64_t>(event.size());
   return length + bytes_of(masked_crc(length)) + event + bytes_of(masked_crc(event));
 }
-/// Returns fields 1 and 2 of an Event: time [s] and step.
-std::string at(double seconds, std::size_t step) {
-  return "\x09" + bytes_of(seconds) + "\x10" + variable_length(step);
+/// Returns fields 1 and 2 of an Event, time [s] and step; both are the epoch.
+std::string at(std::size_t epoch) {
+  return "\x09" + bytes_of(static_cast<double>(epoch)) + "\x10" + variable_length(epoch);
 }
 std::string scalar(const std::string& tag, double value) {
   return field(1, field(1, tag) + "\x15" + bytes_of(static_cast<float>(value)));
@@ -83,16 +82,14 @@ nlohmann::json learning_curve_json(const LearningCurve& curve) {
     all.push_back({{"epoch", e.epoch},
                    {"training_loss", e.training},
                    {"validation_loss", e.validation},
-                   {"learning_rate", e.learning_rate},
-                   {"seconds", e.seconds}});
+                   {"learning_rate", e.learning_rate}});
   return all;
 }
 
 LearningCurve read_learning_curve(const nlohmann::json& curve) {
   LearningCurve all;
   for (const auto& e : curve)
-    all.push_back({e.at("epoch"), e.at("training_loss"), e.at("validation_loss"), e.at("learning_rate"),
-                   e.at("seconds")});
+    all.push_back({e.at("epoch"), e.at("training_loss"), e.at("validation_loss"), e.at("learning_rate")});
   return all;
 }
 
@@ -102,10 +99,10 @@ std::string learning_curve_csv(const LearningCurve& curve) {
 
 std::string tensorboard_events(const LearningCurve& curve, std::size_t begin) {
   std::string text;
-  if (begin == 0) text = record(at(0.0, 0) + field(3, "brain.Event:2"));
+  if (begin == 0) text = record(at(0) + field(3, "brain.Event:2"));
   for (std::size_t k = begin; k < curve.size(); ++k) {
     const EpochErrors& e = curve[k];
-    text += record(at(e.seconds, e.epoch) +
+    text += record(at(e.epoch) +
                    field(5, scalar("loss/training", e.training) + scalar("loss/validation", e.validation) +
                                 scalar("learning_rate", e.learning_rate)));
   }

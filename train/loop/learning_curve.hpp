@@ -1,6 +1,6 @@
 #pragma once
 // Learning curve of a training run: errors of each epoch as CSV, as TensorBoard events and as a terminal
-// chart.
+// chart. It contains no clock times, so that equal runs write equal files.
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -15,7 +15,6 @@ struct EpochErrors {
   double training = 0.0;       ///< mean loss of the training rows during the epoch
   double validation = 0.0;     ///< loss of the validation rows after it
   double learning_rate = 0.0;  ///< of its last step
-  double seconds = 0.0;        ///< wall clock since the start of the run, without interruptions [s]
 };
 using LearningCurve = std::vector<EpochErrors>;
 
@@ -27,9 +26,10 @@ LearningCurve read_learning_curve(const nlohmann::json& curve);
 std::string learning_curve_csv(const LearningCurve& curve);
 
 /// Returns the curve as TensorBoard event records: scalars "loss/training", "loss/validation" and
-/// "learning_rate" at step = epoch. The first record, the format's version, is present if `begin` is 0;
-/// otherwise the records of the epochs from index `begin` on. Format: a TFRecord of a protocol buffer `Event`
-/// each (https://github.com/tensorflow/tensorboard/blob/2.12.0/tensorboard/compat/proto/event.proto).
+/// "learning_rate" at step = epoch; a record's time is its epoch in seconds. The first record, the format's
+/// version, is present if `begin` is 0; otherwise the records of the epochs from index `begin` on. Format: a
+/// TFRecord of a protocol buffer `Event` each
+/// (https://github.com/tensorflow/tensorboard/blob/2.12.0/tensorboard/compat/proto/event.proto).
 std::string tensorboard_events(const LearningCurve& curve, std::size_t begin = 0);
 
 /// Returns a chart of `columns` characters' width: both losses against the epoch, on a logarithmic

@@ -206,7 +206,7 @@ class Loop {
   void judge_weights(double samples_per_s) {
     const double error = data_.loss ? own_loss() : squared_error();
     const bool better = error < at_.best;
-    curve_.push_back({at_.epoch + 1, at_.loss_sum / at_.rows, error, rate_, seconds()});
+    curve_.push_back({at_.epoch + 1, at_.loss_sum / at_.rows, error, rate_});
     progress_.line(fmt::format("epoch {} of {}: loss {:.4f}, validation {:.4f}{}{}, {}", at_.epoch + 1,
                                settings_.recipe.epochs, at_.loss_sum / at_.rows, error,
                                better ? ", best so far" : "", data_.loss ? "" : " (scaled units)",
