@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <future>
+#include <mutex>
 #include <thread>
 
 #include "base/child.hpp"
@@ -82,14 +83,17 @@ int run(Command& c) {
     return [&setup, step_of] { return std::make_shared<const live::Step>(step_of(*setup)); };
   };
   const Submitted first = std::async(std::launch::async, compared(live::first_step));
-  const Submitted submitted = std::async(std::launch::async, [&] {
-    first.wait();
-    return compared(live::submitted_step)();
-  });
+  // Not before a page shows the first step and asks: the comparison would take the browser's processor time.
+  Submitted submitted;
+  std::once_flag asked;
   jobs::PageParts parts;
   parts.setup = setup;
   parts.first = [&] { return first.get(); };
-  parts.submitted = [&] { return submitted.get(); };
+  parts.submitted = [&] {
+    std::call_once(asked,
+                   [&] { submitted = std::async(std::launch::async, compared(live::submitted_step)); });
+    return submitted.get();
+  };
   parts.start_fit = [&](const json& request) { return forks.start(request); };
   parts.progress = progress_text;
   parts.save = [&](const live::Session& session, int step) {
