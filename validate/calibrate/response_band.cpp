@@ -15,8 +15,7 @@ ResponseBands response_bands(const plant::PlantModel& fitted, const std::vector<
   const std::vector<bool> out = held_out_events(records, options.held_out);
   const noise::WhitenedEvents events = noise::whitened_events(fitted, records, options.events);
   const sim::plant::PlantUnderTest tested = fitted.under_test();
-  std::vector<fit::EventState> states(events.size());
-  std::vector<Eigen::MatrixXd> information(events.size());
+  std::vector<fit::LinearisedEvent> linear(events.size());
   std::vector<double> chi2(events.size());
   const auto each = [&](auto work) { in_parallel(events.size(), work, [](int) {}); };
   each([&](std::size_t e) {
@@ -24,11 +23,8 @@ ResponseBands response_bands(const plant::PlantModel& fitted, const std::vector<
     if (!alone.failed.empty())
       throw InputError({"playback of the record fails", events[e].record.name, alone.failed,
                         "check the model's parameters and the record's base and units"});
-    states[e] = alone.events.front().state;
     chi2[e] = alone.chi2;
-    if (!out[e])
-      information[e] =
-          fit::information(fit::event_sensitivities(tested, events.whitened(e), states[e], free));
+    linear[e] = fit::linearise(tested, events.whitened(e), alone.events.front().state, free);
   });
   const auto n = static_cast<Eigen::Index>(free.size());
   Eigen::MatrixXd precision = Eigen::MatrixXd::Zero(n, n);
@@ -37,7 +33,8 @@ ResponseBands response_bands(const plant::PlantModel& fitted, const std::vector<
   double sum = 0, values = 0;
   for (std::size_t e = 0; e < events.size(); ++e) {
     if (out[e]) continue;
-    precision += information[e];
+    const Eigen::MatrixXd j = linear[e].projected();
+    precision += j.transpose() * j;
     sum += chi2[e];
     values += events[e].values();
   }
@@ -45,7 +42,7 @@ ResponseBands response_bands(const plant::PlantModel& fitted, const std::vector<
   const double half = constants::normal95 * std::sqrt(std::max(1.0, sum / values));
   ResponseBands bands(events.size());
   each([&](std::size_t e) {
-    auto deviation = fit::response_deviation(tested, events.whitened(e), states[e], free, covariance);
+    auto deviation = fit::response_deviation(linear[e], events[e], covariance);
     for (std::size_t c = 0; c < deviation.size(); ++c) {
       for (double& v : deviation[c]) v *= half;
       bands[e].emplace(playin::output_name(events[e].channels[c]), std::move(deviation[c]));

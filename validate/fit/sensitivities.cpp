@@ -49,21 +49,24 @@ Eigen::VectorXd whitened(const noise::WhitenedEvent& e, const std::vector<double
   return all;
 }
 
-/// Response with its sensitivities at a point of the fit.
-struct Linearised {
-  playin::Response response;
-  Eigen::MatrixXd by_parameter, by_state;  ///< whitened: [compared value][parameter], [compared value][state]
-  Eigen::MatrixXd state_covariance;        ///< of the states at given parameters, with unit priors
-  Eigen::MatrixXd absorbed;  ///< [state][parameter]: part of a parameter's effect that the states absorb
-};
-Linearised linearised(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvent& e,
-                      const EventState& state, const std::vector<FreeParameter>& free) {
+}  // namespace
+
+double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
+  const auto& record = parameter_record(plant, f.id);
+  const double value = parameter_value(plant, f.id);
+  const double size = value != 0 ? std::abs(value) : 0.05 * std::min(record.high - record.low, 20.0);
+  return (f.prior_sd > 0 ? f.prior_sd : 1.0) * size;
+}
+
+LinearisedEvent linearise(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvent& e,
+                          const EventState& state, const std::vector<FreeParameter>& free,
+                          const event::Playing& how) {
   std::vector<playin::SensitivityParameter> along;
   for (const auto& f : free)
     along.push_back({.kind = Kind::parameter, .parameter = f.id, .scale = axis_unit(tested.plant, f)});
   std::ranges::move(own_parameters(e.event), std::back_inserter(along));
-  Linearised at;
-  at.response = event::play(tested, e.event, state, along, kExact);
+  LinearisedEvent at;
+  at.response = event::play(tested, e.event, state, along, how);
   const auto parameters = static_cast<Eigen::Index>(free.size());
   const auto states = static_cast<Eigen::Index>(along.size()) - parameters;
   at.by_parameter.resize(e.event.values(), parameters);
@@ -80,32 +83,20 @@ Linearised linearised(const sim::plant::PlantUnderTest& tested, const noise::Whi
   return at;
 }
 
-}  // namespace
-
-double axis_unit(const sim::plant::Plant& plant, const FreeParameter& f) {
-  const auto& record = parameter_record(plant, f.id);
-  const double value = parameter_value(plant, f.id);
-  const double size = value != 0 ? std::abs(value) : 0.05 * std::min(record.high - record.low, 20.0);
-  return (f.prior_sd > 0 ? f.prior_sd : 1.0) * size;
-}
-
 EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, noise::WhitenedEvent e,
                                        const EventState& state, const std::vector<FreeParameter>& free) {
-  const Linearised at = linearised(tested, e, state, free);
+  const LinearisedEvent at = linearise(tested, e, state, free, kExact);
   EventSensitivities back;
   back.channels = static_cast<int>(e.event.channels.size());
   back.residual = whitened(e, at.response.value, true);
-  back.sensitivities = at.by_parameter - at.by_state * at.absorbed;
+  back.sensitivities = at.projected();
   back.score = back.sensitivities.transpose() * back.residual -
                at.absorbed.transpose() * in_parameter_units(e.event, state);
   return back;
 }
 
-std::vector<std::vector<double>> response_deviation(const sim::plant::PlantUnderTest& tested,
-                                                    noise::WhitenedEvent e, const EventState& state,
-                                                    const std::vector<FreeParameter>& free,
+std::vector<std::vector<double>> response_deviation(const LinearisedEvent& at, const event::FitEvent& event,
                                                     const Eigen::MatrixXd& covariance) {
-  const Linearised at = linearised(tested, e, state, free);
   const auto parameters = at.by_parameter.cols(), all = parameters + at.by_state.cols();
   // Joint covariance: the state follows a change of the parameters by -absorbed.
   Eigen::MatrixXd follow(all, parameters), joint(all, all);
@@ -113,7 +104,7 @@ std::vector<std::vector<double>> response_deviation(const sim::plant::PlantUnder
   joint = follow * covariance * follow.transpose();
   joint.bottomRightCorner(all - parameters, all - parameters) += at.state_covariance;
   std::vector<std::vector<double>> deviation;
-  for (const playin::Output channel : e.event.channels) {
+  for (const playin::Output channel : event.channels) {
     const auto of = static_cast<std::size_t>(channel);
     const std::size_t samples = at.response.value[of].size();
     Eigen::MatrixXd by(samples, all);

@@ -11,6 +11,25 @@ namespace swingbank::validate::fit {
 /// is the magnitude of the value; a value of 0 has a share of its range in place of its magnitude.
 double axis_unit(const sim::plant::Plant& plant, const FreeParameter& parameter);
 
+/// Response of one event with its sensitivities at a point of the fit, per axis_unit and per prior standard
+/// deviation of the event's own state.
+struct LinearisedEvent {
+  playin::Response response;               ///< with its sensitivities to the parameters, then to the states
+  Eigen::MatrixXd by_parameter, by_state;  ///< whitened: [compared value][parameter], [compared value][state]
+  Eigen::MatrixXd state_covariance;        ///< of the states at given parameters
+  Eigen::MatrixXd absorbed;  ///< [state][parameter]: part of a parameter's effect that the states absorb
+  /// Returns the whitened sensitivities to the parameters with the states projected out.
+  [[nodiscard]] Eigen::MatrixXd projected() const { return by_parameter - by_state * absorbed; }
+};
+/// Linearises the response of one event. Throws InputError if the playback fails.
+LinearisedEvent linearise(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvent& event,
+                          const EventState& state, const std::vector<FreeParameter>& free,
+                          const event::Playing& how = {});
+/// Returns the standard deviation of the modelled response of one event, as [channel][sample] [pu]: the
+/// uncertainty of the parameters, of this covariance per axis_unit, and that of the event's own state.
+std::vector<std::vector<double>> response_deviation(const LinearisedEvent& at, const event::FitEvent& event,
+                                                    const Eigen::MatrixXd& covariance);
+
 /// Sensitivities of one event at a point of the fit.
 struct EventSensitivities {
   Eigen::MatrixXd sensitivities;  ///< [sample * channels + channel][parameter], whitened, per axis_unit
@@ -25,14 +44,6 @@ struct EventSensitivities {
 /// motion) is projected out of `sensitivities` and `score`. Throws InputError if the playback fails.
 EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, noise::WhitenedEvent event,
                                        const EventState& state, const std::vector<FreeParameter>& free);
-
-/// Returns the standard deviation of the modelled response of one event at a point of the fit, as
-/// [channel][sample] [pu]: the uncertainty of the parameters, of this covariance per axis_unit, and that of
-/// the event's own state at given parameters, in its noise. Throws InputError if the playback fails.
-std::vector<std::vector<double>> response_deviation(const sim::plant::PlantUnderTest& tested,
-                                                    noise::WhitenedEvent event, const EventState& state,
-                                                    const std::vector<FreeParameter>& free,
-                                                    const Eigen::MatrixXd& covariance);
 
 /// Returns J'J of one event, the Fisher information on the parameters in units of their priors.
 Eigen::MatrixXd information(const EventSensitivities& e);
