@@ -31,7 +31,7 @@ RankMessage unpacked(const std::string& text) {
 }
 
 /// Replies to the ranks that have sent a result, each with its next item. `others`: number of ranks that have
-/// not been told yet that no item is left.
+/// not received the end of the queue yet.
 void reply(MPI_Comm world, items::ItemQueue& queue, int& others) {
   for (int there = 1; there != 0;) {
     MPI_Status status;

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
+#include <regex>
 
 #include "base/nearest_word.hpp"
 
@@ -71,19 +71,14 @@ std::vector<PlacedField> placed_fields() {
 }
 
 /// Returns whether the text is a date of ISO 8601 in the calendar: year, month or day.
-bool is_date(std::string_view text) {
-  constexpr std::size_t kYearEnd = 4, kMonthEnd = 7, kDayEnd = 10;  // number of characters
-  if (text.size() != kYearEnd && text.size() != kMonthEnd && text.size() != kDayEnd) return false;
-  int part[3] = {0, 1, 1};
-  const std::size_t begin[3] = {0, kYearEnd + 1, kMonthEnd + 1}, end[3] = {kYearEnd, kMonthEnd, kDayEnd};
-  for (std::size_t k = 0; k < 3 && end[k] <= text.size(); ++k) {
-    if (k > 0 && text[begin[k] - 1] != '-') return false;
-    const auto digits = text.substr(begin[k], end[k] - begin[k]);
-    if (digits.find_first_not_of("0123456789") != std::string_view::npos) return false;
-    std::from_chars(digits.data(), digits.data() + digits.size(), part[k]);
-  }
+bool is_date(const std::string& text) {
+  static const std::regex form(R"((\d{4})(?:-(\d{2})(?:-(\d{2}))?)?)");
+  std::smatch part;
+  if (!std::regex_match(text, part, form)) return false;
+  const auto number = [&](std::size_t k) { return part[k].matched ? std::stoi(part[k]) : 1; };
   using namespace std::chrono;
-  return (year(part[0]) / month(static_cast<unsigned>(part[1])) / day(static_cast<unsigned>(part[2]))).ok();
+  return (year(number(1)) / month(static_cast<unsigned>(number(2))) / day(static_cast<unsigned>(number(3))))
+      .ok();
 }
 
 /// Records a problem for each key of a table that is not in `known`, or if it is no table.

@@ -15,8 +15,6 @@ namespace {
 using sim::plant::Plant;
 namespace network = sim::network;
 
-constexpr double kPercent = 100;
-
 /// Returns the plant without what belongs to an event: instruments and changed references.
 Plant plant_for_studies(Plant plant) {
   plant.measurements.clear();
@@ -149,8 +147,8 @@ UsabilityAt check_at(const plant::PlantModel& model, const Plant& plant, const O
                                still.until, kStudyDuration);
       return at;
     }
-    at.drift_P = kPercent * still.largest(0);
-    at.drift_Q = kPercent * still.largest(1);
+    at.drift_P = 100 * still.largest(0);
+    at.drift_Q = 100 * still.largest(1);
     const Deviation moved = simulate(grid, step_of(plant, state.voltage));
     at.oscillation = least_damped_oscillation(moved.of, kStudyRate, kSampleError);
     at.damped = moved.stable && moved.decays();
@@ -158,7 +156,7 @@ UsabilityAt check_at(const plant::PlantModel& model, const Plant& plant, const O
       // The decay in one radian must exceed the error of a sample; without damping its sign is that of
       // rounding.
       at.damped = at.damped && o->damping * o->amplitude > kSampleError;
-      o->amplitude *= kPercent;
+      o->amplitude *= 100;
     }
   } catch (const InputError& error) {
     at.failure = error.problems().front().sentence();
@@ -202,7 +200,7 @@ Usability check_usability(const plant::PlantModel& model, const std::vector<Oper
   const Plant plant = plant_for_studies(model.plant);
   const sim::Effect* regulator = regulator_of(plant);
   all.step = regulator ? fmt::format("step of the reference of {} by {:+g} pu", regulator->name, kStudyStep)
-                       : fmt::format("step of the infinite bus's voltage by {:+g} %", -kPercent * kStudyStep);
+                       : fmt::format("step of the infinite bus's voltage by {:+g} %", -100 * kStudyStep);
   all.at.resize(states.size());
   in_parallel(
       states.size(), [&](std::size_t k) { all.at[k] = check_at(model, plant, states[k]); }, [](int) {});

@@ -143,7 +143,8 @@ TEST(Nameplate, ReferenceManualListsEveryField) {
     EXPECT_THAT(manual.str(), HasSubstr(row(f, "[nameplate.exciter]")));
   for (const auto& e : nameplate_equipment()) {
     const std::string section(e.section);
-    EXPECT_THAT(manual.str(), AnyOf(HasSubstr("`" + section + "`"), HasSubstr("[nameplate." + section + "]")));
+    EXPECT_THAT(manual.str(),
+                AnyOf(HasSubstr("`" + section + "`"), HasSubstr("[nameplate." + section + "]")));
   }
 }
 
