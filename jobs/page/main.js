@@ -267,6 +267,8 @@ async function fly() {
 let pointed = "";
 const point = guard(async (name) => {
   pointed = name;
+  by("ribbon").hidden = !name;
+  by("ribbon").lastElementChild.textContent = `${name} ± 10 %`;
   if (!name) return charts.ribbon(null);
   const { event } = state,
     n = chipsOf(state.step, event).length;

@@ -53,7 +53,12 @@ function row(p, moved, settled, point) {
     box,
     make("span", { className: "unit", textContent: p.unit }),
   );
-  const mark = (v) => element.classList.toggle("changed", p.submitted === undefined || v !== p.submitted);
+  const mark = (v) => {
+    element.classList.toggle("changed", p.submitted === undefined || v !== p.submitted);
+    const unusual = v < p.low || v > p.high;
+    element.classList.toggle("unusual", unusual);
+    box.title = unusual ? `outside the usual range, ${digits(p.low)} to ${digits(p.high)} ${p.unit}` : "";
+  };
   mark(p.value);
   const set = (v, from) => {
     if (from !== range) range.value = Math.round(kSteps * place(p, v));
