@@ -55,9 +55,10 @@ function row(p, moved, settled, point) {
   );
   const mark = (v) => {
     element.classList.toggle("changed", p.submitted === undefined || v !== p.submitted);
-    const unusual = v < p.low || v > p.high;
+    const [low, high] = p.usual;
+    const unusual = (low !== null && v < low) || (high !== null && v > high);
     element.classList.toggle("unusual", unusual);
-    box.title = unusual ? `outside the usual range, ${digits(p.low)} to ${digits(p.high)} ${p.unit}` : "";
+    box.title = unusual ? `outside the usual range, ${digits(low)} to ${digits(high)} ${p.unit}` : "";
   };
   mark(p.value);
   const set = (v, from) => {

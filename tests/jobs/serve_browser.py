@@ -143,6 +143,17 @@ until("undo of the value", lambda: "SEXS.K" in text("now") and "Trying" not in t
 ActionChains(page).send_keys("z").perform()
 until("undo of both values", lambda: text("now") == "this model: + SEXS", 30)
 
+# a value outside the usual range is marked
+def set_box(name, value):
+    page.execute_script("const b = document.querySelector(`[aria-label='${arguments[0]} as a number']`);"
+                        "b.value = arguments[1]; b.dispatchEvent(new Event('change'));", name, value)
+    until("the value", lambda: "Trying" not in text("verdict") and name in text("now"), 30)
+    return page.execute_script("return document.querySelector(`[aria-label='${arguments[0]} as a number']`)"
+                               ".closest('.slider').classList.contains('unusual')", name)
+assert not set_box("GENROU.H", "6.4") and set_box("GENROU.H", "1e6"), "an unusual H is not marked"
+ActionChains(page).send_keys("z").send_keys("z").perform()
+until("undo of H", lambda: text("now") == "this model: + SEXS", 30)
+
 # a reload keeps the steps, the present one and the held-out event
 page.refresh()
 until("the page again", lambda: page.execute_script("return document.body.dataset.compared"), 60)

@@ -49,6 +49,7 @@ json sliders(const Setup& setup, const Step& step) {
                 {"value", value},
                 {"low", low},
                 {"high", high},
+                {"usual", {number(p.low), number(p.high)}},
                 {"log", axis.logarithmic},
                 {"fitted", std::ranges::any_of(free, [&](const auto& f) { return f.id == id; })}};
       if (submitted) s["submitted"] = parameter_value(setup.model.plant, *submitted);
