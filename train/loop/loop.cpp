@@ -146,12 +146,13 @@ class Loop {
     return ((out - targets).square() * loss_weights_).mean();
   }
 
-  /// Returns "560 samples/s", with the limit set by the step's matrix products if known.
+  /// Returns "560 samples/s", with the limit set by the step's matrix products if they matter.
   [[nodiscard]] std::string rate(double samples_per_s) const {
-    if (operations_per_row_ == 0.0) return fmt::format("{:.0f} samples/s", samples_per_s);
-    const double most = settings_.gflops * 1e9 / operations_per_row_;
+    const double seconds_per_row = operations_per_row_ / (settings_.gflops * 1e9);
+    const double percent = settings_.gflops > 0.0 ? 100.0 * samples_per_s * seconds_per_row : 0.0;
+    if (percent < 1.0) return fmt::format("{:.0f} samples/s", samples_per_s);
     return fmt::format("{:.0f} samples/s, {:.0f} % of the {:.0f} that its matrix products alone allow",
-                       samples_per_s, 100.0 * samples_per_s / most, most);
+                       samples_per_s, percent, 1.0 / seconds_per_row);
   }
 
   /// Updates the averaged weights. The average starts short, so that the initial weights lose influence soon.
