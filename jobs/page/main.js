@@ -20,6 +20,7 @@ const state = {
   values: {},
   curves: new Map(),
   running: null,
+  starting: null, // request that starts the fit
   number: 0,
   trying: null, // comparison of a value that was changed
   diagnosed: null, // step of the diagnosis whose candidates are shown
@@ -302,12 +303,15 @@ async function compareChanged() {
   }
 }
 const settled = guard(() => (state.trying = compareChanged()));
-/** An action on the present step: it waits for the comparison of a value that was just changed. */
-const onStep = (action) =>
-  guard(async (...words) => {
+/** An action on the present step: it waits for the actions before it, and for the comparison of a changed value. */
+let before = Promise.resolve();
+const onStep = (action) => {
+  const guarded = guard(async (...words) => {
     await state.trying?.catch(() => {}); // settled() shows this error
     return action(...words);
   });
+  return (...words) => (before = before.then(() => guarded(...words)));
+};
 
 // --- fits
 async function start(request) {
@@ -320,7 +324,8 @@ async function start(request) {
   }
   fits.busy(true);
   try {
-    await api.fit({ ...request, step: state.step.step, held_out: held });
+    state.starting = api.fit({ ...request, step: state.step.step, held_out: held });
+    await state.starting;
     state.running = request.kind;
   } catch (error) {
     fits.busy(false);
@@ -401,7 +406,10 @@ by("fit").addEventListener(
 );
 by("stop").addEventListener(
   "click",
-  guard(() => (state.running ? api.stop() : undefined)),
+  guard(async () => {
+    await state.starting?.catch(() => {}); // start() shows this error
+    if (state.running) await api.stop();
+  }),
 );
 by("undo").addEventListener("click", undo);
 by("redo").addEventListener("click", redo);
