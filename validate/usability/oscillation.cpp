@@ -18,7 +18,6 @@ using Signals = std::vector<std::vector<double>>;
 /// Three significant digits of the response, for the order of its decomposition (T. K. Sarkar, O. Pereira,
 /// IEEE Antennas and Propagation Magazine 37 (1995) 48).
 constexpr double kSignificant = 1e3;
-constexpr std::size_t kMinimumSamples = 6;  ///< for one oscillation and a constant
 
 /// Returns the Hankel matrices of the signals, one above the other.
 MatrixXd hankel(const Signals& signals, Eigen::Index columns) {
@@ -52,7 +51,7 @@ VectorXcd poles(const Signals& signals, double accuracy) {
 }  // namespace
 
 std::optional<Oscillation> least_damped_oscillation(const Signals& signals, double rate, double accuracy) {
-  if (signals.empty() || signals.front().size() < kMinimumSamples) return {};
+  if (signals.empty() || signals.front().empty()) return {};
   const VectorXcd z = poles(signals, accuracy);
   if (z.size() == 0) return {};
   const auto samples = static_cast<Eigen::Index>(signals.front().size());

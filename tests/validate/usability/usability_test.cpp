@@ -56,6 +56,8 @@ TEST(LeastDampedOscillation, ThereIsNoneInAnExponentialOrInNoSignal) {
   EXPECT_FALSE(least_damped_oscillation({y}, 30, 1e-9).has_value());
   EXPECT_FALSE(least_damped_oscillation({std::vector<double>(300, 0.0)}, 30, 1e-9).has_value());
   EXPECT_FALSE(least_damped_oscillation({}, 30, 1e-9).has_value());
+  for (const std::size_t samples : {0, 1, 2, 3, 5})  // too few for an oscillation
+    EXPECT_FALSE(least_damped_oscillation({std::vector<double>(samples, 1.0)}, 30, 1e-9).has_value());
 }
 
 /// 2 H s^2 + D s + w0 Ks = 0 with Ks = E' E cos(delta) / X after the step of the infinite bus by -1 %, which
