@@ -6,7 +6,8 @@ sed 's/^\[record\]$/&\nbase_kv = 69.0/' "$SWINGBANK_SOURCE/configs/plants/ieee14
 # shellcheck disable=SC2034,SC2154 # used by the tests; set by lib.bash
 serve() {
   cd "$work" || exit
-  "$swingbank" serve --model "$model" --records "$@" --power-only --out saved --quiet >url 2>log &
+  # The server ends with this test, also if it fails.
+  setpriv --pdeathsig TERM "$swingbank" serve --model "$model" --records "$@" --power-only --out saved --quiet >url 2>log &
   server=$!
   for ((k = 0; k < 300; ++k)); do
     [[ -s url ]] && break
