@@ -69,17 +69,15 @@ function(swingbank_own_headers folder)
 endfunction()
 
 # swingbank_program(name [KIND train] [COMPONENT component]): bin/<name>, one program with several commands
-# (jobs/run_command.cpp) of this folder, which declares them in commands.hpp. It is installed if it has a component
-# (install.cmake).
+# (jobs/run_command.cpp) of this folder. It is installed if it has a component (install.cmake).
 function(swingbank_program name)
   cmake_parse_arguments(A "" "KIND;COMPONENT" "" ${ARGN})
   cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME folder)
   add_executable(${name} ${PROJECT_SOURCE_DIR}/jobs/run_command.cpp)
   target_link_libraries(${name} PRIVATE swingbank_cold swingbank_command_line)
-  target_compile_definitions(${name} PRIVATE SWINGBANK_VERSION="${PROJECT_VERSION}" SWINGBANK_COMMANDS="${folder}/commands.hpp")
+  target_compile_definitions(${name} PRIVATE SWINGBANK_VERSION="${PROJECT_VERSION}")
   target_include_directories(${name} PRIVATE ${PROJECT_BINARY_DIR}/modules/${folder}/own ${PROJECT_BINARY_DIR}/commands/${name})
-  # Each command names its helpers as it likes.
-  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF SWINGBANK_NAMESPACE swingbank::${folder})
+  set_target_properties(${name} PROPERTIES SWINGBANK_NAMESPACE swingbank::${folder})
   if(NOT A_KIND STREQUAL "train")
     swingbank_precompile(${name} cold)
   endif()
@@ -91,8 +89,8 @@ function(swingbank_program name)
 endfunction()
 
 # swingbank_command(name IN program SUMMARY "one line" GROUP "heading" USES modules... [SOURCES files...]):
-# <name>.cpp becomes a command of the program, started as bin/swingbank-<name>. `swingbank --help` lists the summary
-# under the heading. The target swingbank-<name> builds the program.
+# <name>.cpp, with the function <name>_command::run, becomes a command of the program, started as bin/swingbank-<name>.
+# `swingbank --help` lists the summary under the heading. The target swingbank-<name> builds the program.
 function(swingbank_command name)
   cmake_parse_arguments(A "" "IN;SUMMARY;GROUP" "USES;SOURCES" ${ARGN})
   string(REPLACE - _ file ${name})
@@ -104,7 +102,8 @@ function(swingbank_command name)
   file(MAKE_DIRECTORY ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
   file(CREATE_LINK ${A_IN} ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/swingbank-${name} SYMBOLIC)
   get_target_property(namespace ${A_IN} SWINGBANK_NAMESPACE)
-  set_property(TARGET ${A_IN} APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\", ${namespace}::${file}_command},\n")
+  set_property(TARGET ${A_IN} APPEND_STRING PROPERTY SWINGBANK_COMMANDS "{\"${name}\", \"${A_SUMMARY}\", ${namespace}::${file}_command::run},\n")
+  set_property(TARGET ${A_IN} APPEND_STRING PROPERTY SWINGBANK_DECLARATIONS "namespace ${namespace}::${file}_command { jobs::CommandFunction run; }\n")
   get_target_property(component ${A_IN} SWINGBANK_COMPONENT)
   if(NOT component)
     set(component "")
@@ -122,7 +121,9 @@ function(swingbank_command_tables)
   get_property(programs GLOBAL PROPERTY SWINGBANK_MULTI_COMMAND_PROGRAMS)
   foreach(program ${programs})
     get_target_property(table ${program} SWINGBANK_COMMANDS)
+    get_target_property(declarations ${program} SWINGBANK_DECLARATIONS)
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/commands/${program}/commands_of_program.inc CONTENT "${table}" @ONLY)
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/commands/${program}/declarations.inc CONTENT "${declarations}" @ONLY)
   endforeach()
 endfunction()
 

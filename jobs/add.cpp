@@ -7,7 +7,6 @@
 #include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
-#include "jobs/commands.hpp"
 #include "jobs/results.hpp"
 #include "jobs/retrain_run.hpp"
 #include "validate/add/report.hpp"
@@ -17,6 +16,7 @@
 #include "validate/plant/plant_file.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
+namespace swingbank::jobs::add_command {
 namespace {
 
 using namespace swingbank;
@@ -258,7 +258,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
 
 }  // namespace
 
-int swingbank::jobs::add_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   interrupt_on_stop_signals();
   Arguments a;
   declare(line, a);
@@ -272,3 +272,5 @@ int swingbank::jobs::add_command(CommandLine& line, int argc, char** argv) {
   a.command = jobs::command_line("add", argc, argv);
   return jobs::guarded("add", [&] { return run_interruptible(a); });
 }
+
+}  // namespace swingbank::jobs::add_command

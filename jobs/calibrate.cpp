@@ -8,7 +8,6 @@
 #include "base/own_command.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
-#include "jobs/commands.hpp"
 #include "jobs/results.hpp"
 #include "validate/calibrate/network.hpp"
 #include "validate/calibrate/report.hpp"
@@ -20,6 +19,7 @@
 #include "validate/plant/plant_file.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
+namespace swingbank::jobs::calibrate_command {
 namespace {
 
 using namespace swingbank;
@@ -318,7 +318,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
 
 }  // namespace
 
-int swingbank::jobs::calibrate_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   interrupt_on_stop_signals();
   Arguments a;
   declare(line, a);
@@ -332,3 +332,5 @@ int swingbank::jobs::calibrate_command(CommandLine& line, int argc, char** argv)
   a.command = jobs::command_line("calibrate", argc, argv);
   return jobs::guarded("calibrate", [&] { return run_interruptible(a); });
 }
+
+}  // namespace swingbank::jobs::calibrate_command

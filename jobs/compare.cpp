@@ -6,12 +6,12 @@
 #include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
-#include "jobs/commands.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/compare/report.hpp"
 #include "validate/system/system.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
+namespace swingbank::jobs::compare_command {
 namespace {
 
 using namespace swingbank;
@@ -154,7 +154,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
 
 }  // namespace
 
-int swingbank::jobs::compare_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   interrupt_on_stop_signals();
   Arguments a;
   declare(line, a);
@@ -164,3 +164,5 @@ int swingbank::jobs::compare_command(CommandLine& line, int argc, char** argv) {
   a.of.limit_threads();
   return jobs::guarded("compare", [&] { return a.system.empty() ? run(a) : run_system(a); });
 }
+
+}  // namespace swingbank::jobs::compare_command

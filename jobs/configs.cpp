@@ -3,9 +3,9 @@
 
 #include "base/input_file.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 
-int swingbank::jobs::configs_command(CommandLine& line, int argc, char** argv) {
+namespace swingbank::jobs::configs_command {
+int run(CommandLine& line, int argc, char** argv) {
   line.example("cp -r \"$(swingbank configs)\" .");
   line.footer("Paths inside a config refer to the folder of that config.");
   if (!line.parse(argc, argv)) return line.end();
@@ -20,3 +20,5 @@ int swingbank::jobs::configs_command(CommandLine& line, int argc, char** argv) {
   fmt::print("{}\n", folder.string());
   return 0;
 }
+
+}  // namespace swingbank::jobs::configs_command

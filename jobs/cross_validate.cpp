@@ -2,10 +2,10 @@
 // mpirun or srun share the folds; a Slurm array task takes one with --fold.
 #include "train/run/cross_validate.hpp"
 
-#include "jobs/commands.hpp"
 #include "jobs/training_options.hpp"
 #include "train/run/processes.hpp"
 
+namespace swingbank::jobs::cross_validate_command {
 namespace {
 using namespace swingbank;
 
@@ -47,7 +47,7 @@ int train_nested(const train::data::ShardStream& stream, train::run::RunRequest 
 }
 }  // namespace
 
-int swingbank::jobs::cross_validate_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   TrainingOptions options;
   std::string fold = "all", judged;
   int processes = 0;
@@ -85,3 +85,5 @@ int swingbank::jobs::cross_validate_command(CommandLine& line, int argc, char** 
     });
   });
 }
+
+}  // namespace swingbank::jobs::cross_validate_command

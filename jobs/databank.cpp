@@ -12,9 +12,9 @@
 #include "base/inputs_kept.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "mpi/draw/databank_file.hpp"
 
+namespace swingbank::jobs::databank_command {
 namespace {
 using namespace swingbank;
 namespace fs = std::filesystem;
@@ -68,7 +68,7 @@ int run(const std::string& config_file, const mpi::draw::Overrides& overrides, s
 }
 }  // namespace
 
-int swingbank::jobs::databank_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   line.describe(
       "Draws the databank of a dataset: parameters that keep a distance from one another.\n"
       "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5");
@@ -90,3 +90,5 @@ int swingbank::jobs::databank_command(CommandLine& line, int argc, char** argv) 
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::databank_command

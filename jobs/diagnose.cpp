@@ -10,7 +10,6 @@
 #include "base/stop_signal.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
-#include "jobs/commands.hpp"
 #include "jobs/fleet_run.hpp"
 #include "mpi/items/one_process.hpp"
 #include "validate/diagnose/report.hpp"
@@ -18,6 +17,7 @@
 #include "validate/fleet_plant/fleet_plant.hpp"
 #include "validate/thresholds/list.hpp"
 
+namespace swingbank::jobs::diagnose_command {
 namespace {
 
 using namespace swingbank;
@@ -168,7 +168,7 @@ void declare(jobs::CommandLine& line, Command& c) {
 
 }  // namespace
 
-int swingbank::jobs::diagnose_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   interrupt_on_stop_signals();
   Command c;
   declare(line, c);
@@ -187,3 +187,5 @@ int swingbank::jobs::diagnose_command(CommandLine& line, int argc, char** argv) 
     return run(c);
   });
 }
+
+}  // namespace swingbank::jobs::diagnose_command

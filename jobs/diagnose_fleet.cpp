@@ -1,11 +1,12 @@
 // swingbank diagnose-fleet: the fleet of `swingbank diagnose --fleet` under mpirun or srun. That command
 // starts it, so that only fleets on several ranks load MPI.
-#include "jobs/commands.hpp"
+#include "jobs/command_line.hpp"
 #include "jobs/fleet_run.hpp"
 #include "mpi/ranks/item_ranks.hpp"
 #include "mpi/ranks/session.hpp"
 
-int swingbank::jobs::diagnose_fleet_command(CommandLine& line, int argc, char** argv) {
+namespace swingbank::jobs::diagnose_fleet_command {
+int run(CommandLine& line, int argc, char** argv) {
   FleetCommand c;
   declare_fleet(line, c);
   if (!line.parse(argc, argv)) return line.end();
@@ -13,3 +14,5 @@ int swingbank::jobs::diagnose_fleet_command(CommandLine& line, int argc, char** 
   return mpi::ranks::run_on_all_ranks(session,
                                       [&] { return run_fleet(c, mpi::ranks::ItemRanks(MPI_COMM_WORLD)); });
 }
+
+}  // namespace swingbank::jobs::diagnose_fleet_command

@@ -11,11 +11,11 @@
 #include "base/json.hpp"
 #include "base/nearest_word.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "jobs/effect_coverage.hpp"
 #include "sim/library/library.hpp"
 #include "sim/user_models/user_model.hpp"
 
+namespace swingbank::jobs::effects_command {
 namespace {
 using namespace swingbank;
 using namespace swingbank::sim;
@@ -242,7 +242,7 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& u
 }
 }  // namespace
 
-int swingbank::jobs::effects_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   line.describe(
       "Lists the effects of the simulator by slot; with a NAME, its block diagram, equations, "
       "parameters, states and source.");
@@ -269,3 +269,5 @@ int swingbank::jobs::effects_command(CommandLine& line, int argc, char** argv) {
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::effects_command

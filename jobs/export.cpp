@@ -4,10 +4,10 @@
 #include "base/inputs_kept.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "jobs/event_records.hpp"
 #include "validate/plant/plant_dyr.hpp"
 
+namespace swingbank::jobs::export_command {
 namespace {
 
 using namespace swingbank;
@@ -48,7 +48,7 @@ int run(const Arguments& a) {
 
 }  // namespace
 
-int swingbank::jobs::export_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   Arguments a;
   line.group("Input");
   line.add("--model", a.plant, "plant file (configs/plants/README.md)").required();
@@ -69,3 +69,5 @@ int swingbank::jobs::export_command(CommandLine& line, int argc, char** argv) {
   if (!line.parse(argc, argv)) return line.end();
   return jobs::guarded("export", [&] { return run(a); });
 }
+
+}  // namespace swingbank::jobs::export_command

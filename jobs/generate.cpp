@@ -16,7 +16,6 @@
 #include "base/durable.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "jobs/software.hpp"
 #include "mpi/draw/card.hpp"
 #include "mpi/draw/shard_maker.hpp"
@@ -24,6 +23,7 @@
 #include "mpi/ranks/shard_group.hpp"
 #include "mpi/store/summary.hpp"
 
+namespace swingbank::jobs::generate_command {
 namespace {
 using namespace swingbank;
 
@@ -182,7 +182,7 @@ std::optional<int> parse(jobs::CommandLine& line, int argc, char** argv,
 }
 }  // namespace
 
-int swingbank::jobs::generate_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   mpi::ranks::MpiSession session(&argc, &argv);
   const bool first = session.rank() == 0;
   spdlog::set_default_logger(spdlog::stderr_color_mt("generate"));
@@ -203,3 +203,5 @@ int swingbank::jobs::generate_command(CommandLine& line, int argc, char** argv) 
     return run(command, first);
   });
 }
+
+}  // namespace swingbank::jobs::generate_command

@@ -10,8 +10,8 @@
 
 #include "base/json.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 
+namespace swingbank::jobs::inventory_command {
 namespace {
 
 using namespace swingbank;
@@ -140,7 +140,7 @@ void print_json(const Inventory& inventory) {
 
 }  // namespace
 
-int swingbank::jobs::inventory_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   Arguments a;
   line.add("--raw,--epc", a.raw,
            "network, format by file extension: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
@@ -166,3 +166,5 @@ int swingbank::jobs::inventory_command(CommandLine& line, int argc, char** argv)
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::inventory_command

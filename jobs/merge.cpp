@@ -12,9 +12,9 @@
 #include "base/progress.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "mpi/store/summary.hpp"
 
+namespace swingbank::jobs::merge_command {
 namespace {
 using namespace swingbank;
 namespace store = mpi::store;
@@ -33,7 +33,7 @@ int run(const std::vector<std::string>& from, const std::string& into, Progress:
 }
 }  // namespace
 
-int swingbank::jobs::merge_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("merge"));
   spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
   line.describe(
@@ -55,3 +55,5 @@ int swingbank::jobs::merge_command(CommandLine& line, int argc, char** argv) {
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::merge_command

@@ -6,9 +6,9 @@
 #include "base/inputs_kept.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "validate/plant/plant_file.hpp"
 
+namespace swingbank::jobs::plant_command {
 namespace {
 
 using namespace swingbank;
@@ -66,7 +66,7 @@ int run(Arguments& a) {
 
 }  // namespace
 
-int swingbank::jobs::plant_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   Arguments a;
   line.group("Input");
   line.add("--raw,--epc", a.unit.raw,
@@ -111,3 +111,5 @@ int swingbank::jobs::plant_command(CommandLine& line, int argc, char** argv) {
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::plant_command

@@ -8,13 +8,13 @@
 #include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "jobs/event_records.hpp"
 #include "jobs/record_for_network.hpp"
 #include "train/runtime/blas_kernels.hpp"
 #include "train/runtime/runtime.hpp"
 #include "validate/check/record_set.hpp"
 
+namespace swingbank::jobs::predict_command {
 namespace {
 using namespace swingbank;
 using namespace swingbank::validate;
@@ -190,7 +190,7 @@ int run(const Options& o) {
 }
 }  // namespace
 
-int swingbank::jobs::predict_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   Options o;
   line.add("--network", o.network, "file.network that train or cross-validate wrote, or a folder with one")
       .required();
@@ -218,3 +218,5 @@ int swingbank::jobs::predict_command(CommandLine& line, int argc, char** argv) {
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::predict_command

@@ -11,13 +11,13 @@
 #include "base/json.hpp"
 #include "base/output_folder.hpp"
 #include "jobs/analysis_options.hpp"
-#include "jobs/commands.hpp"
 #include "jobs/fit_forks.hpp"
 #include "jobs/page_server.hpp"
 #include "jobs/progress_plan.hpp"
 #include "validate/live/fits.hpp"
 #include "validate/live/save.hpp"
 
+namespace swingbank::jobs::serve_command {
 namespace {
 
 using namespace swingbank;
@@ -136,7 +136,7 @@ void declare(jobs::CommandLine& line, Command& c) {
 
 }  // namespace
 
-int swingbank::jobs::serve_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   interrupt_on_stop_signals();
   Command c;
   declare(line, c);
@@ -144,3 +144,5 @@ int swingbank::jobs::serve_command(CommandLine& line, int argc, char** argv) {
   if (c.of.model.empty()) return line.lacks("--model with --records");
   return jobs::guarded("serve", [&] { return run(c); });
 }
+
+}  // namespace swingbank::jobs::serve_command

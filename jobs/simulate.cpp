@@ -12,7 +12,6 @@
 #include "base/durable.hpp"
 #include "base/inputs_kept.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "jobs/measured_run.hpp"
 #include "mpi/store/hdf5_file.hpp"
 #include "sim/batch/batch.hpp"
@@ -25,6 +24,7 @@
 #include "sim/reference/reference.hpp"
 #include "sim/user_models/user_model.hpp"
 
+namespace swingbank::jobs::simulate_command {
 namespace {
 using namespace swingbank;
 using namespace swingbank::sim;
@@ -377,7 +377,7 @@ int simulate(const Options& o) {
 
 }  // namespace
 
-int swingbank::jobs::simulate_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   Options o;
   line.group("Input");
   line.add("--raw,--epc", o.raw,
@@ -498,3 +498,5 @@ int swingbank::jobs::simulate_command(CommandLine& line, int argc, char** argv) 
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::simulate_command

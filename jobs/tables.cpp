@@ -8,8 +8,8 @@
 
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 
+namespace swingbank::jobs::tables_command {
 namespace {
 
 using namespace swingbank;
@@ -32,7 +32,7 @@ report::Provenance sources(const std::vector<report::RunResult>& results, int ar
 
 }  // namespace
 
-int swingbank::jobs::tables_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   std::vector<std::string> folders;
   std::string out;
   line.add("results", folders, "folders with the JSON files of train and cross-validate").required();
@@ -58,3 +58,5 @@ int swingbank::jobs::tables_command(CommandLine& line, int argc, char** argv) {
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::tables_command

@@ -1,10 +1,10 @@
 // swingbank train: trains one network on a dataset split 60/20/20 by databank point (Table IV).
 #include <unistd.h>
 
-#include "jobs/commands.hpp"
 #include "jobs/training_options.hpp"
 
-int swingbank::jobs::train_command(CommandLine& line, int argc, char** argv) {
+namespace swingbank::jobs::train_command {
+int run(CommandLine& line, int argc, char** argv) {
   using namespace swingbank;
   TrainingOptions options;
   line.add_flag("--watch", options.watch, "draw the learning curve on the terminal, after each epoch");
@@ -25,3 +25,5 @@ int swingbank::jobs::train_command(CommandLine& line, int argc, char** argv) {
     return exit_code(outcome);
   });
 }
+
+}  // namespace swingbank::jobs::train_command

@@ -10,10 +10,10 @@
 #include "base/progress.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "mpi/store/shard_check.hpp"
 #include "mpi/store/summary.hpp"
 
+namespace swingbank::jobs::verify_command {
 namespace {
 using namespace swingbank;
 namespace store = mpi::store;
@@ -38,7 +38,7 @@ int run(const std::string& folder, int processes, Progress::Mode mode) {
 }
 }  // namespace
 
-int swingbank::jobs::verify_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("verify"));
   spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
   line.describe(
@@ -58,3 +58,5 @@ int swingbank::jobs::verify_command(CommandLine& line, int argc, char** argv) {
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::verify_command

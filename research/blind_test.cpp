@@ -19,8 +19,8 @@
 #include "research/blind/cases/plan.hpp"
 #include "research/blind/score/judge.hpp"
 #include "research/blind/score/score.hpp"
-#include "research/commands.hpp"
 
+namespace swingbank::research::blind_test_command {
 namespace {
 using namespace swingbank;
 using namespace swingbank::research;
@@ -213,7 +213,7 @@ int on_ranks(int argc, char** argv, const Options& o) {
 
 }  // namespace
 
-int swingbank::research::blind_test_command(jobs::CommandLine& line, int argc, char** argv) {
+int run(jobs::CommandLine& line, int argc, char** argv) {
   Options o;
   line.add("--config", o.config, "distribution of the cases of --make: configs/blind/cases.toml, tiny.toml");
   line.add("--out", o.out, "folder of the run: cases/, truth/, verdicts/, score.md").required();
@@ -248,3 +248,5 @@ int swingbank::research::blind_test_command(jobs::CommandLine& line, int argc, c
     return 1;
   }
 }
+
+}  // namespace swingbank::research::blind_test_command

@@ -12,9 +12,9 @@
 
 #include "base/problem.hpp"
 #include "jobs/command_line.hpp"
-#include "research/commands.hpp"
 #include "research/nightly_work.hpp"
 
+namespace swingbank::research::night_plan_command {
 namespace {
 
 using namespace swingbank;
@@ -103,7 +103,7 @@ void run(const Options& o) {
 
 }  // namespace
 
-int swingbank::research::night_plan_command(jobs::CommandLine& line, int argc, char** argv) {
+int run(jobs::CommandLine& line, int argc, char** argv) {
   Options o;
   line.add("experiments", o.experiments, "files of configs/experiments").required();
   line.add("--preset", o.preset, "preset of the experiments").shows_default();
@@ -122,3 +122,5 @@ int swingbank::research::night_plan_command(jobs::CommandLine& line, int argc, c
     return 1;
   }
 }
+
+}  // namespace swingbank::research::night_plan_command

@@ -27,8 +27,8 @@
 #include "base/median.hpp"
 #include "base/problem.hpp"
 #include "jobs/command_line.hpp"
-#include "research/commands.hpp"
 
+namespace swingbank::research::nightly_compare_command {
 namespace {
 
 namespace fs = std::filesystem;
@@ -191,7 +191,7 @@ void print_report(const std::string& date, std::vector<Change> changes) {
 
 }  // namespace
 
-int swingbank::research::nightly_compare_command(jobs::CommandLine& line, int argc, char** argv) {
+int run(jobs::CommandLine& line, int argc, char** argv) {
   std::string folder, date;
   line.add("folder", folder, "folder of nightly benchmarks, as research/nightly.sh writes it").required();
   line.add("--night", date, "date of the run, YYYY-MM-DD (default: the latest)");
@@ -212,3 +212,5 @@ int swingbank::research::nightly_compare_command(jobs::CommandLine& line, int ar
     return 1;
   }
 }
+
+}  // namespace swingbank::research::nightly_compare_command

@@ -33,7 +33,7 @@ std::vector<ParameterId> all_parameters(const sim::plant::Plant& plant) {
   return all;
 }
 
-std::map<std::string, PlantParameter> parameters(const Plant& model) {
+std::map<std::string, PlantParameter> plant_parameters(const Plant& model) {
   std::map<std::string, PlantParameter> all;
   for (const ParameterId id : all_parameters(model.plant)) {
     const sim::Parameter& p = parameter_record(model.plant, id);
@@ -116,12 +116,12 @@ std::string shown_as(const Plant& model) {
 
 std::string parameter_table(const Plant& model) {
   report::Table table{shown_as(model), {"parameter", "value", "unit", "meaning"}, {}};
-  for (const auto& [name, p] : parameters(model))
+  for (const auto& [name, p] : plant_parameters(model))
     table.rows.push_back({name, fmt::format("{:.5g}", p.value), p.unit, p.meaning});
   return table_html(table);
 }
 
-void bind_parameter(py::module_& module) {
+void bind_plant_parameter(py::module_& module) {
   py::class_<PlantParameter>(module, "Parameter", "One parameter of a plant with its definition.")
       .def_readonly("name", &PlantParameter::name, "\"GENROU.H\"")
       .def_readonly("symbol", &PlantParameter::symbol, "Usual notation, \"X'd\".")
@@ -138,7 +138,7 @@ void bind_parameter(py::module_& module) {
 }  // namespace
 
 PlantClass bind_plant(py::module_& module) {
-  bind_parameter(module);
+  bind_plant_parameter(module);
   PlantClass of(module, "Plant", "Model of one plant. Immutable: every change returns another plant.");
   of.def(py::init(&read), py::arg("file"), py::arg("user_models") = std::vector<Path>{},
          "Reads a plant file (.toml). `user_models`: files of user-defined models that it may use.\n\n"
@@ -161,7 +161,8 @@ PlantClass bind_plant(py::module_& module) {
       .def_property_readonly(
           "mva", [](const Plant& p) { return p.plant.mva; }, "Base of the machine [MVA].")
       .def_property_readonly("effects", &effects_of, "Names of the plant's effects, machine first.")
-      .def_property_readonly("parameters", &parameters, "Parameters by name: {\"GENROU.H\": Parameter}.")
+      .def_property_readonly("parameters", &plant_parameters,
+                             "Parameters by name: {\"GENROU.H\": Parameter}.")
       .def("with_values", &with_values, py::arg("values"),
            "Returns the plant with other values, {\"GENROU.H\": 5.0} [unit of each parameter].\n\n"
            "Raises InputError for unknown names and values that the equations do not allow.")
@@ -180,7 +181,7 @@ PlantClass bind_plant(py::module_& module) {
       .def("dyr", &dyr_text, "Returns the records of machine and controls for a PSS/E .dyr file.")
       .def("__getitem__",
            [](const Plant& p, const std::string& name) {
-             const auto all = parameters(p);
+             const auto all = plant_parameters(p);
              const auto found = all.find(name);
              if (found == all.end()) throw py::key_error(name);
              return found->second.value;

@@ -56,12 +56,12 @@ Record from_columns(const Plant& plant, const Columns& columns, const std::strin
 }
 
 /// Optional channels by name; P and Q are in MW and Mvar.
-struct Channel {
+struct RecordedChannel {
   const char *name, *unit;
   std::vector<double> record::Record::*values;
   bool power;
 };
-constexpr Channel kRecorded[] = {
+constexpr RecordedChannel kRecorded[] = {
     {"V", "pu", &record::Record::V, false},      {"theta", "rad", &record::Record::theta, false},
     {"P", "MW", &record::Record::P, true},       {"Q", "Mvar", &record::Record::Q, true},
     {"f", "pu", &record::Record::f, false},      {"speed", "pu", &record::Record::speed, false},
@@ -72,13 +72,13 @@ constexpr Channel kRecorded[] = {
 
 std::map<std::string, std::string> units_of(const Record& r) {
   std::map<std::string, std::string> units;
-  for (const Channel& c : kRecorded)
+  for (const RecordedChannel& c : kRecorded)
     if (!(r.record.*c.values).empty()) units[c.name] = c.unit;
   return units;
 }
 
 py::array_t<double> channel_of(const Record& r, const std::string& name) {
-  for (const Channel& c : kRecorded)
+  for (const RecordedChannel& c : kRecorded)
     if (name == c.name && !(r.record.*c.values).empty())
       return array(r.record.*c.values, c.power ? r.record.base.mva : 1.0);
   throw py::key_error(name);
