@@ -11,6 +11,8 @@ class OneProcess final : public Ranks {
   [[nodiscard]] int size() const override { return 1; }
   [[nodiscard]] int on_this_machine() const override { return 1; }
   [[nodiscard]] int from_first(int value) const override { return value; }
+  void copy_from_first(std::span<std::byte>) const override {}
+  void sum(std::span<float>) const override {}
   void agree(const std::string&, const std::function<void()>& prepare) const override { prepare(); }
   [[nodiscard]] bool share_items(const SharedItems& shared) const override;
 };

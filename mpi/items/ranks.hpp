@@ -1,8 +1,10 @@
 #pragma once
-// Ranks that share independent items of work, as an interface: this process alone (one_process.hpp) or the
-// ranks of a launcher (mpi/ranks/item_ranks.hpp), so that the same command runs with and without MPI.
+// Ranks that share independent items of work or one training, as an interface: this process alone
+// (one_process.hpp) or the ranks of a launcher (mpi/ranks/item_ranks.hpp), so that the same command runs with
+// and without MPI.
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,10 @@ class Ranks {
   [[nodiscard]] virtual int on_this_machine() const = 0;
   /// Returns the value of rank 0 on all ranks. Collective.
   [[nodiscard]] virtual int from_first(int value) const = 0;
+  /// Replaces the bytes by those of rank 0, the same number on all ranks. Collective.
+  virtual void copy_from_first(std::span<std::byte> bytes) const = 0;
+  /// Replaces each value by its sum over the ranks; all ranks get the same sums. Collective.
+  virtual void sum(std::span<float> values) const = 0;
   /// Runs `prepare` on every rank. If it throws on any rank, all ranks throw the problems of the first such
   /// rank. Collective.
   virtual void agree(const std::string& where, const std::function<void()>& prepare) const = 0;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 
@@ -97,6 +98,27 @@ int ItemRanks::on_this_machine() const {
 int ItemRanks::from_first(int value) const {
   MPI_Bcast(&value, 1, MPI_INT, 0, world_);
   return value;
+}
+
+namespace {
+/// Calls `work` for consecutive parts of at most 2^28 elements: MPI counts by `int`.
+template <class Element, class Work>
+void in_parts(std::span<Element> all, const Work& work) {
+  constexpr std::size_t kMostAtOnce = std::size_t{1} << 28;
+  for (std::size_t at = 0; at < all.size(); at += kMostAtOnce) {
+    const auto part = all.subspan(at, std::min(kMostAtOnce, all.size() - at));
+    work(part.data(), static_cast<int>(part.size()));
+  }
+}
+}  // namespace
+
+void ItemRanks::copy_from_first(std::span<std::byte> bytes) const {
+  in_parts(bytes, [&](std::byte* data, int count) { MPI_Bcast(data, count, MPI_BYTE, 0, world_); });
+}
+void ItemRanks::sum(std::span<float> values) const {
+  in_parts(values, [&](float* data, int count) {
+    MPI_Allreduce(MPI_IN_PLACE, data, count, MPI_FLOAT, MPI_SUM, world_);
+  });
 }
 
 void ItemRanks::agree(const std::string& where, const std::function<void()>& prepare) const {

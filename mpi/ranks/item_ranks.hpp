@@ -1,5 +1,5 @@
 #pragma once
-// Ranks of a launcher that share items through MPI.
+// Ranks of a launcher that share items or a training through MPI.
 #include <mpi.h>
 
 #include "mpi/items/ranks.hpp"
@@ -14,6 +14,8 @@ class ItemRanks final : public items::Ranks {
   [[nodiscard]] int size() const override;
   [[nodiscard]] int on_this_machine() const override;
   [[nodiscard]] int from_first(int value) const override;
+  void copy_from_first(std::span<std::byte> bytes) const override;
+  void sum(std::span<float> values) const override;
   void agree(const std::string& where, const std::function<void()>& prepare) const override;
   [[nodiscard]] bool share_items(const items::SharedItems& shared) const override;
 

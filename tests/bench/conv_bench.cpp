@@ -87,7 +87,8 @@ int main(int argc, char** argv) {
     torch_adam.step();
   };
   const auto spectral_step = [&] {
-    (network->forward(x, true) - y).square().mean().backward();
+    const train::networks::StepRows rows;
+    (network->forward(x, &rows) - y).square().mean().backward();
     adam.step(1e-3);
   };
   direct_step();  // allocations and thread start-up

@@ -3,6 +3,7 @@
 #include <ATen/ATen.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -12,6 +13,7 @@
 #include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/stop_signal.hpp"
+#include "mpi/items/one_process.hpp"
 #include "train/data/random.hpp"
 #include "train/loop/adam.hpp"
 #include "train/loop/detail/checkpoint.hpp"
@@ -53,6 +55,13 @@ struct Position {
   double rows = 0.0, seconds = 0.0, processor_seconds = 0.0;
 };
 
+/// Returns the elements at positions first, first + stride, ...
+std::vector<std::uint64_t> every(std::span<const std::uint64_t> all, std::size_t first, std::size_t stride) {
+  std::vector<std::uint64_t> some;
+  for (std::size_t i = first; i < all.size(); i += stride) some.push_back(all[i]);
+  return some;
+}
+
 class Loop {
  public:
   Loop(networks::Network& network, const LoopData& data, const LoopSettings& settings,
@@ -61,6 +70,9 @@ class Loop {
         data_(data),
         settings_(settings),
         progress_(progress),
+        ranks_(settings.ranks == nullptr ? alone_ : *settings.ranks),
+        rank_(static_cast<std::size_t>(ranks_.rank())),
+        size_(static_cast<std::size_t>(ranks_.size())),
         weights_(network.parameters()),
         adam_(weights_) {
     outputs_ = static_cast<std::int64_t>(data.targets.size() / data.stream.labels().rows);
@@ -72,6 +84,7 @@ class Loop {
             ? at::ones({outputs_}, at::kFloat)
             : at::tensor(at::ArrayRef<float>(data.weights.data(), data.weights.size()), at::kFloat);
     batches_ = (data.train.size() + settings.recipe.batch - 1) / settings.recipe.batch;
+    own_validation_ = every(data.validation, rank_, size_);
   }
 
   LoopReport run() {
@@ -79,33 +92,47 @@ class Loop {
     bool saved = false;
     while (at_.epoch < settings_.recipe.epochs && at_.stale < settings_.recipe.patience && !saved)
       saved = !epoch();
-    const double spent = seconds(), processor = processor_seconds();
+    std::array<float, 1> processor = {static_cast<float>(unsummed_processor_time())};
+    ranks_.sum(processor);
+    at_.processor_seconds += static_cast<double>(processor[0]);
+    const double spent = seconds();
     if (!saved) {
       at::NoGradGuard no_gradients;
       for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i].copy_(best_[i]);
     }
-    return {!saved, at_.epoch, at_.best_epoch, spent, at_.best, processor, curve_};
+    return {!saved, at_.epoch, at_.best_epoch, spent, at_.best, at_.processor_seconds, curve_};
   }
 
  private:
   /// Trains one epoch. Returns false if the run was asked to stop, after saving it.
   bool epoch() {
-    data::BatchReader reader(data_.stream, data::epoch_order(data_.train, settings_.seed, at_.epoch),
-                             settings_.recipe.batch, at_.batch,
+    const std::vector<std::uint64_t> order = data::epoch_order(data_.train, settings_.seed, at_.epoch);
+    const std::size_t whole = settings_.recipe.batch;
+    std::vector<std::uint64_t> own;
+    for (std::size_t begin = 0; begin < order.size(); begin += whole)
+      for (std::size_t i = rank_; i < std::min(whole, order.size() - begin); i += size_)
+        own.push_back(order[begin + i]);
+    data::BatchReader reader(data_.stream, std::move(own), (whole - rank_ + size_ - 1) / size_, at_.batch,
                              data_.stream.training(settings_.first_draw + at_.epoch));
-    data::Batch batch;
     const auto begin = Clock::now();
     const double before = at_.rows;
-    while (reader.next(batch)) {
-      if (settings_.stop ? settings_.stop() : stop_asked()) {
+    while (at_.batch < batches_) {
+      const bool stop = settings_.stop ? settings_.stop() : stop_asked();
+      if (size_ == 1 && stop) {
         save();
         return false;
       }
-      step(batch);
+      data::Batch batch;  // the last batch of an epoch may have no row for this rank
+      const std::size_t rows = std::min(whole, order.size() - at_.batch * whole);
+      if (rank_ < rows) reader.next(batch);
+      if (step(batch, rows, stop)) {
+        save();
+        return false;
+      }
       if (seconds_since(last_save_) > settings_.checkpoint_every_s) save();
     }
     judge((at_.rows - before) / seconds_since(begin));
-    if (settings_.epoch_done) settings_.epoch_done(curve_);
+    if (settings_.epoch_done && rank_ == 0) settings_.epoch_done(curve_);
     ++at_.epoch;
     at_.batch = 0;
     at_.loss_sum = at_.rows = 0.0;
@@ -113,31 +140,85 @@ class Loop {
     return true;
   }
 
-  void step(const data::Batch& batch) {
-    seed_torch(data::key(settings_.seed, data::Purpose::dropout, at_.epoch, at_.batch));
-    std::optional<runtime::ProductCount> count;
-    if (settings_.gflops > 0.0 && operations_per_row_ == 0.0) count.emplace();
-    const Tensor loss = loss_of(
-        network_.forward(inputs_of(batch, data_.features, data_.guesses, data_.stream.labels().rows), true),
-        targets_of(batch.rows));
-    const double value = loss.item<double>();
+  /// Performs one step. batch: this rank's rows; rows: those of all ranks; stop: this rank was asked to stop.
+  /// Returns true if any was.
+  bool step(const data::Batch& batch, std::size_t rows, bool stop) {
+    StepSums sums{0.0, stop};
+    if (!batch.rows.empty()) sums.loss = add_gradients(batch, static_cast<double>(rows));
+    if (size_ > 1) sum_gradients(sums);
+    const double value = sums.loss;
     if (!std::isfinite(value))
       throw InputError({"the training loss is not a number",
                         fmt::format("epoch {}, batch {}", at_.epoch + 1, at_.batch + 1),
                         "the weights have diverged", "lower learning_rate in the experiment"});
-    loss.backward();
-    if (count) operations_per_row_ = count->operations() / static_cast<double>(batch.rows.size());
     const auto done = at_.epoch * batches_ + at_.batch;
     const TrainingRecipe& recipe = settings_.recipe;
     rate_ = learning_rate(recipe, done, recipe.epochs * batches_);
     adam_.step(rate_, recipe.weight_decay, recipe.clip);
     average_in(static_cast<double>(done));
-    at_.loss_sum += value * static_cast<double>(batch.rows.size());
-    at_.rows += static_cast<double>(batch.rows.size());
+    at_.loss_sum += value * static_cast<double>(rows);
+    at_.rows += static_cast<double>(rows);
     ++at_.batch;
     progress_.update(at_.epoch * data_.train.size() + static_cast<std::uint64_t>(at_.rows),
                      fmt::format("epoch {} of {}, loss {:.4f}", at_.epoch + 1, settings_.recipe.epochs,
                                  at_.loss_sum / at_.rows));
+    return sums.stop;
+  }
+
+  /// Values of a step that all ranks know: mean loss of the batch, and whether a rank was asked to stop.
+  struct StepSums {
+    double loss = 0.0;
+    bool stop = false;
+  };
+
+  /// Computes the gradients of this rank's part of the batch's mean loss. `rows`: of the whole batch. Returns
+  /// the part.
+  double add_gradients(const data::Batch& batch, double rows) {
+    const networks::StepRows place{data::key(settings_.seed, data::Purpose::dropout, at_.epoch, at_.batch),
+                                   rank_, size_};
+    std::optional<runtime::ProductCount> count;
+    if (settings_.gflops > 0.0 && operations_per_row_ == 0.0) count.emplace();
+    const auto own = static_cast<double>(batch.rows.size());
+    const Tensor loss = loss_of(
+        network_.forward(inputs_of(batch, data_.features, data_.guesses, data_.stream.labels().rows), &place),
+        targets_of(batch.rows));
+    (loss * (own / rows)).backward();
+    if (count) operations_per_row_ = count->operations() / own;
+    return loss.item<double>() * own / rows;
+  }
+
+  /// Sums the gradients and the step's values over the ranks, in one message: for each weight tensor the
+  /// number of ranks that have its gradient and the gradient, zero where a rank has none.
+  void sum_gradients(StepSums& sums) {
+    buffer_.clear();
+    for (const Tensor& w : weights_) {
+      const bool has = w.grad().defined();
+      buffer_.push_back(has ? 1.0f : 0.0f);
+      buffer_.resize(buffer_.size() + static_cast<std::size_t>(w.numel()));
+      float* to = buffer_.data() + buffer_.size() - w.numel();
+      if (!has) continue;
+      const Tensor gradient = w.grad().contiguous();
+      std::copy_n(gradient.data_ptr<float>(), w.numel(), to);
+    }
+    buffer_.insert(buffer_.end(), {static_cast<float>(sums.loss), sums.stop ? 1.0f : 0.0f,
+                                   static_cast<float>(unsummed_processor_time())});
+    ranks_.sum(buffer_);
+    const float* from = buffer_.data();
+    for (Tensor& w : weights_) {
+      const bool has = *from++ > 0.0f;
+      if (has && !w.grad().defined()) w.mutable_grad() = at::empty_like(w);
+      if (has && !w.grad().is_contiguous()) w.mutable_grad() = w.grad().contiguous();
+      if (has) std::copy_n(from, w.numel(), w.grad().data_ptr<float>());
+      from += w.numel();
+    }
+    sums = {static_cast<double>(from[0]), from[1] > 0.0f};
+    at_.processor_seconds += static_cast<double>(from[2]);
+  }
+
+  /// Returns the processor time of this rank since the last call [core-s].
+  double unsummed_processor_time() {
+    const double now = processor_time();
+    return now - std::exchange(processor_begin_, now);
   }
 
   [[nodiscard]] Tensor loss_of(const Tensor& out, const Tensor& targets) const {
@@ -148,7 +229,8 @@ class Loop {
 
   /// Returns "560 samples/s", with the limit set by the step's matrix products if they matter.
   [[nodiscard]] std::string rate(double samples_per_s) const {
-    const double seconds_per_row = operations_per_row_ / (settings_.gflops * 1e9);
+    const double seconds_per_row =
+        operations_per_row_ / (settings_.gflops * 1e9 * static_cast<double>(size_));
     const double percent = settings_.gflops > 0.0 ? 100.0 * samples_per_s * seconds_per_row : 0.0;
     if (percent < 1.0) return fmt::format("{:.0f} samples/s", samples_per_s);
     return fmt::format("{:.0f} samples/s, {:.0f} % of the {:.0f} that its matrix products alone allow",
@@ -179,33 +261,42 @@ class Loop {
     judge_weights(samples_per_s);
     swap_average();
   }
-  /// Returns LoopData::loss on the validation rows.
-  double own_loss() {
+  /// Returns the sum of LoopData::loss over this rank's validation rows.
+  double sum_of_losses() {
     at::NoGradGuard no_gradients;
-    data::BatchReader reader(data_.stream, {data_.validation.begin(), data_.validation.end()}, 512, 0,
-                             data_.stream.validation());
+    data::BatchReader reader(data_.stream, own_validation_, 512, 0, data_.stream.validation());
     double sum = 0.0;
     for (data::Batch batch; reader.next(batch);) {
       const Tensor x = inputs_of(batch, data_.features, data_.guesses, data_.stream.labels().rows);
-      sum += data_.loss(network_.forward(x, false), targets_of(batch.rows)).item<double>() *
+      sum += data_.loss(network_.forward(x, nullptr), targets_of(batch.rows)).item<double>() *
              static_cast<double>(batch.rows.size());
     }
-    return sum / static_cast<double>(data_.validation.size());
+    return sum;
   }
-  double squared_error() {
-    const std::vector<float> out = predict(network_, data_.stream, data_.features, data_.validation,
+  /// Returns the sum over this rank's validation rows of the mean squared error of a row's outputs.
+  double sum_of_squares() {
+    const std::vector<float> out = predict(network_, data_.stream, data_.features, own_validation_,
                                            data_.guesses, data_.stream.validation());
     const float* weight = loss_weights_.data_ptr<float>();
     double sum = 0.0;
     for (std::size_t i = 0; i < out.size(); ++i) {
       const auto p = static_cast<std::size_t>(outputs_);
-      const double e = out[i] - data_.targets[data_.validation[i / p] * p + i % p];
+      const double e = out[i] - data_.targets[own_validation_[i / p] * p + i % p];
       sum += e * e * weight[i % p];
     }
-    return sum / static_cast<double>(out.size());
+    return sum / static_cast<double>(outputs_);
+  }
+  double validation_error() {
+    double sum = data_.loss ? sum_of_losses() : sum_of_squares();
+    if (size_ > 1) {
+      std::array<float, 1> total = {static_cast<float>(sum)};
+      ranks_.sum(total);
+      sum = static_cast<double>(total[0]);
+    }
+    return sum / static_cast<double>(data_.validation.size());
   }
   void judge_weights(double samples_per_s) {
-    const double error = data_.loss ? own_loss() : squared_error();
+    const double error = validation_error();
     const bool better = error < at_.best;
     curve_.push_back({at_.epoch + 1, at_.loss_sum / at_.rows, error, rate_});
     progress_.line(fmt::format("epoch {} of {}: loss {:.4f}, validation {:.4f}{}{}, {}", at_.epoch + 1,
@@ -229,9 +320,6 @@ class Loop {
   }
 
   [[nodiscard]] double seconds() const { return at_.seconds + seconds_since(begin_); }
-  [[nodiscard]] double processor_seconds() const {
-    return at_.processor_seconds + processor_time() - processor_begin_;
-  }
 
   template <class Value>
   std::vector<std::span<Value>> arrays() {
@@ -246,7 +334,8 @@ class Loop {
 
   void save() {
     last_save_ = Clock::now();
-    if (settings_.checkpoint.empty()) return;
+    if (size_ == 1) at_.processor_seconds += unsummed_processor_time();
+    if (settings_.checkpoint.empty() || rank_ != 0) return;
     const json header = {{"run", settings_.run ? *settings_.run : json()},
                          {"epoch", at_.epoch},
                          {"batch", at_.batch},
@@ -256,7 +345,7 @@ class Loop {
                          {"loss_sum", at_.loss_sum},
                          {"rows", at_.rows},
                          {"seconds", seconds()},
-                         {"processor_seconds", processor_seconds()},
+                         {"processor_seconds", at_.processor_seconds},
                          {"adam_steps", adam_.steps()},
                          {"learning_rate", rate_},
                          {"curve", learning_curve_json(curve_)}};
@@ -266,9 +355,17 @@ class Loop {
   void resume() {
     if (settings_.checkpoint.empty()) return;
     json header;
-    if (!read_checkpoint(settings_.checkpoint, settings_.run ? *settings_.run : json(), header,
-                         arrays<float>()))
-      return;
+    bool found = false;
+    ranks_.agree(settings_.checkpoint.string(), [&] {
+      found = rank_ == 0 && read_checkpoint(settings_.checkpoint, settings_.run ? *settings_.run : json(),
+                                            header, arrays<float>());
+    });
+    if (ranks_.from_first(found ? 1 : 0) == 0) return;
+    std::string text = header.dump();
+    text.resize(static_cast<std::size_t>(ranks_.from_first(static_cast<int>(text.size()))));
+    ranks_.copy_from_first(std::as_writable_bytes(std::span(text)));
+    header = json::parse(text);
+    for (const auto& array : arrays<float>()) ranks_.copy_from_first(std::as_writable_bytes(array));
     at_ = {header.at("epoch"),
            header.at("batch"),
            header.at("best_epoch"),
@@ -281,7 +378,7 @@ class Loop {
     adam_.set_steps(header.at("adam_steps"));
     rate_ = header.at("learning_rate");
     curve_ = read_learning_curve(header.at("curve"));
-    if (settings_.epoch_done && !curve_.empty()) settings_.epoch_done(curve_);
+    if (settings_.epoch_done && !curve_.empty() && rank_ == 0) settings_.epoch_done(curve_);
     progress_.line(fmt::format("resumed at epoch {}, batch {}", at_.epoch + 1, at_.batch + 1));
   }
 
@@ -289,6 +386,11 @@ class Loop {
   const LoopData& data_;
   const LoopSettings& settings_;
   TrainingProgress& progress_;
+  mpi::items::OneProcess alone_;
+  const mpi::items::Ranks& ranks_;
+  std::size_t rank_, size_;
+  std::vector<std::uint64_t> own_validation_;     // this rank's rows
+  std::vector<float> buffer_;                     // gradients on their way to the other ranks
   std::vector<Tensor> weights_, best_, average_;  // average_: empty unless weights are averaged
   Adam adam_;
   Tensor loss_weights_;
@@ -317,7 +419,7 @@ std::vector<float> predict(networks::Network& network, const data::ShardStream& 
   std::vector<float> out;
   for (data::Batch batch; reader.next(batch);) {
     const Tensor y =
-        network.forward(inputs_of(batch, features, guesses, stream.labels().rows), false).contiguous();
+        network.forward(inputs_of(batch, features, guesses, stream.labels().rows), nullptr).contiguous();
     out.insert(out.end(), y.data_ptr<float>(), y.data_ptr<float>() + y.numel());
   }
   return out;

@@ -1,7 +1,9 @@
 #pragma once
 // Training loop: Adam with early stopping on the validation rows; the weights of the best epoch are kept. A
 // resumed run is bitwise equal: every random number is keyed by seed, epoch and batch, so that no generator
-// state is saved.
+// state is saved. Several ranks train one network together: each takes its rows of every batch, and the
+// gradients are summed. Weights, moments and the course of the training are then the same on all ranks, and
+// equal to those of one rank but for rounding.
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -10,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "mpi/items/ranks.hpp"
 #include "train/data/features.hpp"
 #include "train/data/shard_stream.hpp"
 #include "train/loop/experiment.hpp"
@@ -37,14 +40,15 @@ struct LoopData {
 struct LoopSettings {
   TrainingRecipe recipe;
   std::uint64_t seed = 1;
-  std::filesystem::path checkpoint;       ///< empty: no checkpoints
-  const nlohmann::json* run = nullptr;    ///< identity of the run; other checkpoints are refused
-  double checkpoint_every_s = 30.0;       ///< within an epoch
-  double checkpoint_after_epoch_s = 2.0;  ///< at an epoch's end, if the last one is older
-  std::uint64_t first_draw = 0;           ///< draw of the first epoch's noise; each epoch has the next one
-  double gflops = 0.0;                    ///< rate of matrix products [GFLOP/s]; 0: unknown
-  std::function<bool()> stop;             ///< polled before each batch; empty: stop_asked()
-  /// Called with the curve so far after each epoch, and after a resume; may be empty.
+  std::filesystem::path checkpoint;          ///< empty: no checkpoints
+  const nlohmann::json* run = nullptr;       ///< identity of the run; other checkpoints are refused
+  double checkpoint_every_s = 30.0;          ///< within an epoch
+  double checkpoint_after_epoch_s = 2.0;     ///< at an epoch's end, if the last one is older
+  std::uint64_t first_draw = 0;              ///< draw of the first epoch's noise; each epoch has the next one
+  double gflops = 0.0;                       ///< rate of matrix products [GFLOP/s]; 0: unknown
+  std::function<bool()> stop;                ///< polled before each batch; empty: stop_asked()
+  const mpi::items::Ranks* ranks = nullptr;  ///< that train together; null: this process alone
+  /// Called with the curve so far after each epoch, and after a resume, on rank 0; may be empty.
   std::function<void(const LearningCurve&)> epoch_done;
 };
 
@@ -53,12 +57,13 @@ struct LoopReport {
   std::size_t epochs = 0, best_epoch = 0;
   double seconds = 0.0;     ///< wall clock, including time before a resume [s]
   double validation = 0.0;  ///< validation loss of the best epoch: weighted squared error, scaled units
-  double processor_seconds = 0.0;  ///< of all threads, including before a resume [core-s]
+  double processor_seconds = 0.0;  ///< of all threads and ranks, including before a resume [core-s]
   LearningCurve curve;             ///< all epochs, including before a resume
 };
 
-/// Trains the network; it ends with the weights of its best epoch. Throws InputError if the loss is not
-/// finite.
+/// Trains the network; it ends with the weights of its best epoch. Collective over the ranks, which have the
+/// same data and settings and are not more than a batch has rows. Only rank 0 reads and writes the
+/// checkpoint. Throws InputError, on all ranks, if the loss is not finite or the checkpoint cannot be used.
 LoopReport train_network(networks::Network& network, const LoopData& data, const LoopSettings& settings,
                          TrainingProgress& progress);
 
@@ -70,7 +75,7 @@ std::vector<float> predict(networks::Network& network, const data::ShardStream& 
 
 /// Returns Adam's learning rate at a step (from 0) of `steps` steps.
 double learning_rate(const TrainingRecipe& recipe, std::uint64_t step, std::uint64_t steps);
-/// Seeds the generator of weights and dropout.
+/// Seeds the generator of weights.
 void seed_torch(std::uint64_t key);
 
 }  // namespace swingbank::train::loop

@@ -4,6 +4,7 @@
 #include <ATen/ATen.h>
 
 #include "base/problem.hpp"
+#include "train/networks/detail/dropout.hpp"
 #include "train/networks/detail/layers.hpp"
 #include "train/networks/detail/pool_relu.hpp"
 #include "train/networks/detail/spectral_conv.hpp"
@@ -29,12 +30,12 @@ class Cnn final : public Network {
         last_(kHidden, kLast),
         output_(output_layer(kLast, s.output_bias)) {}
 
-  Tensor forward(const Tensor& x, bool training) override {
+  Tensor forward(const Tensor& x, const StepRows* training) override {
     Tensor h = pool_relu(first_convolution(x), bias1_, kPoolFirst);
     h = pool_relu(spectral_conv(h, weight2_, plan_), bias2_, kPoolSecond);
     h = h.permute({1, 0, 2}).reshape({x.size(0), -1});
-    h = at::dropout(at::relu(hidden_(h)), kDropout, training);
-    h = at::dropout(at::relu(last_(h)), kDropout, training);
+    h = dropout(at::relu(hidden_(h)), kDropout, training, 1);
+    h = dropout(at::relu(last_(h)), kDropout, training, 2);
     return at::relu(output_(h));
   }
 

@@ -8,10 +8,11 @@ class Lstm final : public Network {
   explicit Lstm(const NetworkShape& s)
       : weights_(recurrent_weights(s.channels, 4)), output_(output_layer(kRecurrentUnits, s.output_bias)) {}
 
-  at::Tensor forward(const at::Tensor& x, bool training) override {
+  at::Tensor forward(const at::Tensor& x, const StepRows* training) override {
     const at::Tensor zero = at::zeros({1, x.size(0), kRecurrentUnits}, x.options());
     const at::Tensor series = x.permute({2, 0, 1}).contiguous();
-    const auto states = at::lstm(series, {zero, zero}, weights_, true, 1, 0.0, training, false, false);
+    const auto states =
+        at::lstm(series, {zero, zero}, weights_, true, 1, 0.0, training != nullptr, false, false);
     return at::relu(output_(std::get<1>(states)[0]));
   }
   std::vector<at::Tensor> parameters() override {

@@ -40,7 +40,7 @@ class Mlp final : public Network {
     start_as_zero(output_);
   }
 
-  Tensor forward(const Tensor& x, bool) override { return output_(trunk(x)); }
+  Tensor forward(const Tensor& x, const StepRows*) override { return output_(trunk(x)); }
 
   Tensor describe(const Tensor& x) override {
     const Tensor h = trunk(x);

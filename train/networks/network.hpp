@@ -28,16 +28,25 @@ struct NetworkShape {
   std::vector<Target> targets = {};
 };
 
+/// Rows of a training step. A unit's dropout depends on the step's key and on the row's position in the
+/// batch, so that it is the same however many ranks share the batch.
+struct StepRows {
+  std::uint64_t key = 0;
+  std::uint64_t first = 0, stride = 1;  ///< row i is at position first + i x stride
+};
+
 class Network {
  public:
   virtual ~Network() = default;
-  /// Returns batch x outputs from x, batch x channels x samples. `training` enables dropout.
-  virtual at::Tensor forward(const at::Tensor& x, bool training) = 0;
+  /// Returns batch x outputs from x, batch x channels x samples. `training` enables dropout; null:
+  /// evaluation.
+  virtual at::Tensor forward(const at::Tensor& x, const StepRows* training) = 0;
   /// Returns auxiliary features of rows for a network built on this one, batch x numbers; the last are its
   /// outputs. Undefined tensor: the network has no auxiliary outputs.
   virtual at::Tensor describe(const at::Tensor& x);
-  /// Returns the loss of the outputs of forward(x, true) for targets, batch x outputs [scaled units].
-  /// Undefined tensor: the weighted squared error, and forward does not depend on `training` but for dropout.
+  /// Returns the loss of the outputs of forward(x, &rows) for targets, batch x outputs [scaled units]: a mean
+  /// over the rows. Undefined tensor: the weighted squared error, and forward does not depend on `training`
+  /// but for dropout.
   virtual at::Tensor loss(const at::Tensor& outputs, const at::Tensor& targets);
   /// Returns the trained leaves, in a fixed order.
   virtual std::vector<at::Tensor> parameters() = 0;

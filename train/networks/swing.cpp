@@ -51,7 +51,7 @@ class Swing final : public Network {
     before_ = leaf(at::zeros({1}, at::kFloat));
   }
 
-  Tensor forward(const Tensor& x, bool training) override {
+  Tensor forward(const Tensor& x, const StepRows* training) override {
     const Tensor v = x.reshape({x.size(0), -1}).to(at::kDouble);
     const Tensor level = v.select(1, kIntegralTerms * functions_);
     const Solution found = solve(v, level);
@@ -61,7 +61,7 @@ class Swing final : public Network {
       out[static_cast<std::size_t>(at)] = (value - t.origin) / t.unit;
     }
     Tensor estimates = at::stack(out, 1);
-    if (!training) return estimates.to(at::kFloat);
+    if (training == nullptr) return estimates.to(at::kFloat);
     std::vector<Tensor> deviations(2);
     deviations[static_cast<std::size_t>(H_)] = found.deviation_H;
     deviations[static_cast<std::size_t>(D_)] = found.deviation_D;

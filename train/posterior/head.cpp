@@ -104,7 +104,7 @@ std::vector<Tensor> Head::parameters() {
   return {l.first, l.first_bias, l.second, l.second_bias, l.last, l.last_bias};
 }
 
-Tensor Head::forward(const Tensor& x, bool) {
+Tensor Head::forward(const Tensor& x, const networks::StepRows*) {
   const Layers& l = *layers_;
   Tensor read, estimate;
   {

@@ -29,7 +29,7 @@ class Head final : public networks::Network {
   Head(networks::Network& trained, std::int64_t inputs, std::vector<HeadParameter> parameters);
   ~Head() override;
   /// Returns the numbers of the rows' posteriors: batch x belief_size().
-  at::Tensor forward(const at::Tensor& x, bool training) override;
+  at::Tensor forward(const at::Tensor& x, const networks::StepRows* training) override;
   std::vector<at::Tensor> parameters() override;
   /// Returns the mean negative log density of the truths per parameter, in logits of positions. `targets`:
   /// batch x all outputs of the trained network, scaled.

@@ -11,6 +11,7 @@
 #include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/run_lock.hpp"
+#include "mpi/items/one_process.hpp"
 #include "train/data/random.hpp"
 #include "train/direct/direct.hpp"
 #include "train/run/detail/guesses.hpp"
@@ -227,22 +228,24 @@ namespace {
 /// A run of a network, from the split to the result.
 class NetworkRun {
  public:
-  NetworkRun(const data::ShardStream& stream, const RunRequest& request, const data::RowSplit& split,
-             const data::TargetScale& scale)
+  NetworkRun(const data::ShardStream& stream, const RunRequest& request, const mpi::items::Ranks& ranks,
+             const PreparedRun& prepared)
       : stream_(stream),
         request_(request),
+        ranks_(ranks),
         recipe_(request.experiment.training(request.preset, request.network)),
-        split_(split),
-        scale_(scale),
-        known_(guesses_for(stream, request, scale)),
+        split_(prepared.split),
+        scale_(prepared.scale),
+        known_(guesses_for(stream, request, prepared.scale)),
         name_(training_name(request)),
         identity_(training_identity(stream, request)),
         checkpoint_(request.out / "checkpoints" / (name_ + ".checkpoint")),
-        progress_(name_, epochs() * split.train.size(), request.quiet) {}
+        progress_(name_, epochs() * split_.train.size(), request.quiet || ranks.rank() != 0) {}
 
-  /// Trains the network. Returns false if it was stopped and must be submitted again.
+  /// Trains the network. Returns false if it was stopped and must be submitted again. Collective; only rank 0
+  /// may use the network afterwards.
   bool train() {
-    if (recipe_.noise_levels && load()) return true;
+    if (recipe_.noise_levels && ranks_.from_first(ranks_.rank() == 0 && load() ? 1 : 0) != 0) return true;
     features_ = data::Features::fit(
         stream_, split_.train, request_.experiment.input(request_.preset, request_.network).pca_components);
     loop::seed_torch(data::key(request_.seed, data::Purpose::weights));
@@ -260,7 +263,8 @@ class NetworkRun {
       return false;
     }
     // A network that corrects estimates is not saved: it cannot be used without them.
-    if (request_.save_network && !request_.shuffle_labels && request_.train_share == 1 && known_.none())
+    if (ranks_.rank() == 0 && request_.save_network && !request_.shuffle_labels &&
+        request_.train_share == 1 && known_.none())
       save_network(file(), {stream_, request_, features_, scale_, split_, identity_, report_, *posterior_},
                    *network_);
     return true;
@@ -304,7 +308,7 @@ class NetworkRun {
     const std::vector<float> targets =
         scaled_targets(stream_.labels(), scale_, split_, request_.shuffle_labels, request_.seed);
     loop::TrainingProgress progress(name_ + ", posterior", recipe_.posterior_epochs * split_.train.size(),
-                                    request_.quiet);
+                                    request_.quiet || ranks_.rank() != 0);
     return train_posterior(*posterior_, *network_, context(), settings(name_ + "-posterior"), targets,
                            progress);
   }
@@ -318,6 +322,7 @@ class NetworkRun {
     s.run = &identity_;
     s.gflops = request_.runtime.gflops;
     s.stop = request_.stop;
+    s.ranks = &ranks_;
     const bool drawn = request_.watch && curve == name_;
     s.epoch_done = [this, drawn,
                     files = std::make_shared<loop::LearningCurveFiles>(request_.out / "curves", curve)](
@@ -335,11 +340,12 @@ class NetworkRun {
     return targets;
   }
   void print_sizes() {
-    progress_.line(
-        fmt::format("{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
-                    split_.train.size(), split_.validation.size(), split_.test.size(), features_.channels(),
-                    features_.length(), static_cast<double>(networks::parameter_count(*network_)) * 1e-6,
-                    request_.runtime.sentence()));
+    progress_.line(fmt::format(
+        "{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
+        split_.train.size(), split_.validation.size(), split_.test.size(), features_.channels(),
+        features_.length(), static_cast<double>(networks::parameter_count(*network_)) * 1e-6,
+        ranks_.size() > 1 ? fmt::format("{} ranks of {}", ranks_.size(), request_.runtime.sentence())
+                          : request_.runtime.sentence()));
   }
   [[nodiscard]] std::vector<double> estimates(std::span<const std::uint64_t> rows) {
     const auto out = loop::predict(*network_, stream_, features_, rows, known_.scaled);
@@ -348,6 +354,7 @@ class NetworkRun {
 
   const data::ShardStream& stream_;
   const RunRequest& request_;
+  const mpi::items::Ranks& ranks_;
   const loop::TrainingRecipe& recipe_;
   const data::RowSplit& split_;
   const data::TargetScale& scale_;
@@ -364,9 +371,11 @@ class NetworkRun {
 
 }  // namespace
 
-RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
-  const PreparedRun prepared = prepare(stream, r);
-  if (already_done(prepared.file, prepared.identity)) return RunOutcome::already_done;
+namespace {
+
+/// Locks the run on rank 0. Returns false if its result exists already.
+bool begin(const RunRequest& r, const PreparedRun& prepared, std::optional<RunLock>& lock) {
+  if (already_done(prepared.file, prepared.identity)) return false;
   const auto locks = r.out / "checkpoints";
   make_folder(r.out);
   make_folder(locks);
@@ -374,15 +383,40 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   const std::chrono::seconds patience = r.experiment.training(r.preset, r.network).noise_levels
                                             ? std::chrono::hours(12)
                                             : std::chrono::seconds(5);
-  RunLock lock(locks / (training_name(r) + ".lock"),
-               {"a second run", prepared.file.string(), "wait for it to end, or choose another --out"},
-               patience);
-  if (already_done(prepared.file, prepared.identity)) return RunOutcome::already_done;
-  if (direct::is_method(r.network)) return run_direct(stream, r, prepared);
-  NetworkRun network(stream, r, prepared.split, prepared.scale);
+  lock.emplace(
+      locks / (training_name(r) + ".lock"),
+      LockWords{"a second run", prepared.file.string(), "wait for it to end, or choose another --out"},
+      patience);
+  return !already_done(prepared.file, prepared.identity);
+}
+
+}  // namespace
+
+RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
+  const mpi::items::OneProcess alone;
+  const mpi::items::Ranks& ranks = r.ranks == nullptr ? alone : *r.ranks;
+  std::optional<PreparedRun> prepared;
+  std::optional<RunLock> lock;
+  bool needed = false;
+  ranks.agree(run_name(r), [&] {
+    prepared.emplace(prepare(stream, r));
+    if (ranks.size() > 1 && direct::is_method(r.network))
+      throw InputError({fmt::format("{} ranks for {}", ranks.size(), r.network), "mpirun",
+                        "this method has no training that ranks could share", "start it without mpirun"});
+    const std::size_t batch = r.experiment.training(r.preset, r.network).batch;
+    if (static_cast<std::size_t>(ranks.size()) > batch)
+      throw InputError({fmt::format("{} ranks", ranks.size()), "mpirun",
+                        fmt::format("a batch has {} rows, and each rank needs one", batch),
+                        "start fewer ranks, or raise batch in the experiment"});
+    if (ranks.rank() == 0) needed = begin(r, *prepared, lock);
+  });
+  if (ranks.from_first(needed ? 1 : 0) == 0) return RunOutcome::already_done;
+  if (direct::is_method(r.network)) return run_direct(stream, r, *prepared);
+  NetworkRun network(stream, r, ranks, *prepared);
   if (!network.train()) return RunOutcome::stopped;
-  network.judge_to(prepared.file);
-  lock.withdraw(true);
+  if (ranks.rank() != 0) return RunOutcome::done;
+  network.judge_to(prepared->file);
+  lock->withdraw(true);
   return RunOutcome::done;
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
+#include "mpi/items/ranks.hpp"
 #include "train/data/shard_stream.hpp"
 #include "train/data/split.hpp"
 #include "train/loop/experiment.hpp"
@@ -31,8 +32,9 @@ struct RunRequest {
   std::filesystem::path out;
   runtime::Runtime runtime;
   bool quiet = false;
-  bool watch = false;               ///< draws the learning curve on the terminal
-  std::function<bool()> stop = {};  ///< polled before each batch; empty: stop_asked()
+  bool watch = false;                        ///< draws the learning curve on the terminal
+  std::function<bool()> stop = {};           ///< polled before each batch; empty: stop_asked()
+  const mpi::items::Ranks* ranks = nullptr;  ///< that train the network together; null: this process alone
 };
 
 enum class RunOutcome { done, already_done, stopped };
@@ -40,6 +42,7 @@ enum class RunOutcome { done, already_done, stopped };
 /// Trains, scores and writes the JSON of train/run/README.md. Continues from a checkpoint of the same run.
 /// Throws InputError if the output folder holds a result of another run under the same name, or of other
 /// software, or a checkpoint of other software or kernels, or if another process works on this run (RunLock).
+/// Collective over the ranks, which have the same request and dataset; rank 0 alone scores and writes files.
 RunOutcome run(const data::ShardStream& stream, const RunRequest& request);
 
 /// Returns the targets of all rows in scaled units. With `shuffled`, the labels of training and validation

@@ -345,7 +345,7 @@ Estimate SavedNetwork::estimate(std::span<const float> record, double noise, dou
   features_.apply(series.data(), 1, x.data_ptr<float>());
   Estimate e;
   e.input_rms = rms(x.data_ptr<float>(), static_cast<std::size_t>(x.numel()));
-  const at::Tensor y = network_->forward(x, false).contiguous();
+  const at::Tensor y = network_->forward(x, nullptr).contiguous();
   for (std::size_t i = 0; i < info_.parameters.size(); ++i)
     e.values.push_back(
         std::clamp(scale_.raw(y.data_ptr<float>()[i], i), info_.parameters[i].low, info_.parameters[i].high));
@@ -357,7 +357,7 @@ void SavedNetwork::add_intervals(const at::Tensor& x, double noise, Estimate& e)
   e.intervals.resize(info_.parameters.size());
   if (!posterior_->head) return;
   posterior::Head& head = *posterior_->head;
-  const at::Tensor numbers = head.forward(x, false).contiguous();
+  const at::Tensor numbers = head.forward(x, nullptr).contiguous();
   const auto posteriors =
       head.posteriors({numbers.data_ptr<float>(), static_cast<std::size_t>(numbers.numel())});
   const auto maps = maps_at(posterior_->levels, noise);

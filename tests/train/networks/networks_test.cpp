@@ -7,6 +7,7 @@
 
 #include "base/problem.hpp"
 #include "train/loop/adam.hpp"
+#include "train/networks/detail/dropout.hpp"
 #include "train/networks/network.hpp"
 
 namespace swingbank::train::networks {
@@ -33,7 +34,7 @@ TEST(Networks, GiveOneOutputPerParameterStartedAtTheMean) {
     if (record.name == "swing") continue;  // needs the integrals of the swing equation
     at::manual_seed(1);
     const auto network = make_network(std::string(record.name), shape(3, 40, 5));
-    const at::Tensor y = network->forward(at::randn({7, 3, 40}), false);
+    const at::Tensor y = network->forward(at::randn({7, 3, 40}), nullptr);
     EXPECT_EQ(y.sizes(), (at::IntArrayRef{7, 5})) << record.name;
     // Hidden activations are of order 1 and weights of order 1/sqrt(inputs): the bias of 2 dominates.
     EXPECT_LT((y - 2.0).abs().max().item<double>(), 1.5) << record.name;
@@ -49,7 +50,7 @@ TEST(Networks, OutputOfTheThesisNetworksIsNonNegative) {
     auto s = shape(3, 40, 2);
     s.output_bias = {-5.0f, 5.0f};
     const auto network = make_network(name, s);
-    const at::Tensor y = network->forward(at::randn({7, 3, 40}), false);
+    const at::Tensor y = network->forward(at::randn({7, 3, 40}), nullptr);
     EXPECT_EQ(y.select(1, 0).abs().max().item<double>(), 0.0) << name;
     EXPECT_GT(y.select(1, 1).min().item<double>(), 0.0) << name;
   }
@@ -62,9 +63,10 @@ TEST(NetworksFull, MlpLearnsASquare) {
   const auto network = make_network("mlp", s);
   loop::Adam adam(network->parameters());
   const at::Tensor x = at::rand({64, 1, 2}) * 2 - 1, y = x.select(2, 0) * x.select(2, 1);
+  const StepRows rows;
   double first = 0, last = 0;
   for (int step = 0; step < 150; ++step) {
-    const at::Tensor loss = (network->forward(x, true) - y).square().mean();
+    const at::Tensor loss = (network->forward(x, &rows) - y).square().mean();
     loss.backward();
     adam.step(1e-3, 0.01, 1.0);
     last = loss.item<double>();
@@ -84,15 +86,26 @@ TEST(Networks, ParameterCountsMatchTheThesis) {
   EXPECT_EQ(parameter_count(*make_network("gru", shape(6, 450, 14))), 3 * 512 * (6 + 512 + 2) + out);
 }
 
-TEST(Networks, DropoutFollowsTheSeed) {
+TEST(Networks, DropoutDependsOnKeyAndPositionInTheBatch) {
   const auto network = make_network("cnn", shape(3, 40, 2));
-  const at::Tensor x = at::randn({7, 3, 40});
-  const auto with_seed = [&](std::uint64_t seed) {
-    at::manual_seed(seed);
-    return network->forward(x, true);
-  };
-  EXPECT_TRUE(at::equal(with_seed(5), with_seed(5)));
-  EXPECT_FALSE(at::equal(with_seed(5), with_seed(6)));
+  const at::Tensor x = at::randn({7, 3, 40}), evaluated = network->forward(x, nullptr);
+  const StepRows all{5}, other{6}, odd{5, 1, 2};
+  const at::Tensor y = network->forward(x, &all);
+  EXPECT_TRUE(at::equal(y, network->forward(x, &all)));
+  EXPECT_FALSE(at::allclose(y, network->forward(x, &other)));
+  EXPECT_FALSE(at::allclose(y, evaluated));
+  const auto own = at::tensor({1, 3, 5}, at::kLong);
+  EXPECT_TRUE(
+      at::allclose(network->forward(x.index_select(0, own), &odd), y.index_select(0, own), 1e-4, 1e-5));
+}
+
+TEST(Networks, DropoutKeepsTheMean) {
+  const StepRows rows{3};
+  const at::Tensor dropped = dropout(at::ones({400, 500}), 0.2, &rows, 1);
+  // 200,000 draws: the share of zeros has a standard deviation of 0.0009.
+  EXPECT_NEAR((dropped == 0).to(at::kFloat).mean().item<double>(), 0.2, 0.004);
+  EXPECT_NEAR(dropped.max().item<double>(), 1.25, 1e-6);
+  EXPECT_FALSE(at::equal(dropped, dropout(at::ones({400, 500}), 0.2, &rows, 2)));
 }
 
 TEST(Networks, CnnRefusesAShortSeries) {

@@ -37,7 +37,7 @@ Rows rows() {
 TEST(SwingLayer, SolvesTheSwingEquation) {
   const Rows r = rows();
   const auto network = make_network("swing", shape({{"D", 4.5, 2.0, 1.0}, {"H", 5.5, 2.5, 0.0}}));
-  const at::Tensor y = network->forward(r.input, false);
+  const at::Tensor y = network->forward(r.input, nullptr);
   EXPECT_LT((y.select(1, 0) * 2.0 + 1.0 - r.D).abs().max().item<double>(), 1e-2);
   EXPECT_LT((y.select(1, 1) * 2.5 - r.H).abs().max().item<double>(), 1e-2);
 }
@@ -45,7 +45,8 @@ TEST(SwingLayer, TrainsEveryWeightButIdleOnes) {
   const Rows r = rows();
   const auto network = make_network("swing", shape({{"H", 5.5, 1.0, 0.0}, {"D", 4.5, 1.0, 0.0}}));
   const at::Tensor noisy = r.input + 0.01 * at::randn_like(r.input) * (r.input != kLevel);
-  const at::Tensor loss = network->loss(network->forward(noisy, true), at::stack({r.H, r.D}, 1));
+  const StepRows step;
+  const at::Tensor loss = network->loss(network->forward(noisy, &step), at::stack({r.H, r.D}, 1));
   ASSERT_TRUE(loss.defined());
   loss.backward();
   for (const at::Tensor& p : network->parameters()) {

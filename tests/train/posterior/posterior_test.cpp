@@ -125,8 +125,10 @@ TEST(CoverageFull, TarpDetectsCorrelationsMissedByMarginals) {
 /// Network with one input number per row, which is both its features and its two outputs.
 class Shown final : public networks::Network {
  public:
-  at::Tensor forward(const at::Tensor& x, bool) override { return x.reshape({-1, 1}).expand({-1, 2}); }
-  at::Tensor describe(const at::Tensor& x) override { return forward(x, false).contiguous(); }
+  at::Tensor forward(const at::Tensor& x, const networks::StepRows*) override {
+    return x.reshape({-1, 1}).expand({-1, 2});
+  }
+  at::Tensor describe(const at::Tensor& x) override { return forward(x, nullptr).contiguous(); }
   std::vector<at::Tensor> parameters() override { return {at::zeros({2})}; }
 };
 
@@ -148,7 +150,8 @@ TEST(HeadFull, LearnsAnInputDependentSpreadAndACorrelation) {
   }
   for (int step = 1; step <= 250; ++step) {
     rows(512, x, y);
-    head.loss(head.forward(x, true), y).backward();
+    const networks::StepRows place;
+    head.loss(head.forward(x, &place), y).backward();
     at::NoGradGuard no_gradients;
     for (std::size_t i = 0; i < weights.size(); ++i) {
       const at::Tensor g = weights[i].grad();
@@ -160,7 +163,7 @@ TEST(HeadFull, LearnsAnInputDependentSpreadAndACorrelation) {
   }
   at::NoGradGuard no_gradients;
   rows(4000, x, y);
-  const at::Tensor numbers = head.forward(x, false).contiguous();
+  const at::Tensor numbers = head.forward(x, nullptr).contiguous();
   const Posteriors posteriors =
       head.posteriors({numbers.data_ptr<float>(), static_cast<std::size_t>(numbers.numel())});
   ASSERT_EQ(posteriors.rows, 4000u);

@@ -130,6 +130,7 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
       {"per_parameter", parameters},
       {"shuffled_labels", r.shuffle_labels},
       {"threads", r.runtime.threads},
+      {"ranks", r.ranks == nullptr ? 1 : r.ranks->size()},
       {"blas", r.runtime.blas},
       {"kernels", kernels(r)},
       {"software", software()},
