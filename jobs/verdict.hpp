@@ -59,22 +59,11 @@ struct Judging {
   }
 };
 
-/// Returns the files of one value of --records: "A+B" names two, "FILE#TERMINAL" one, and a .cfg file
-/// includes its .dat file.
+/// Returns every file of one value of --records: "A+B" names two, and a .cfg includes its .dat.
 inline std::vector<std::filesystem::path> files_of(const std::string& word) {
-  namespace fs = std::filesystem;
-  std::vector<fs::path> files;
-  for (std::size_t begin = 0; begin <= word.size();) {
-    const std::size_t plus = std::min(word.find('+', begin), word.size());
-    fs::path file = word.substr(begin, plus - begin);
-    if (!fs::exists(file)) file = file.string().substr(0, file.string().find('#'));
-    files.push_back(file);
-    for (const char* data : {".dat", ".DAT"})
-      if (file.extension() == ".cfg" || file.extension() == ".CFG")
-        if (const fs::path other = fs::path(file).replace_extension(data); fs::exists(other))
-          files.push_back(other);
-    begin = plus + 1;
-  }
+  std::vector<std::filesystem::path> files;
+  for (const auto& source : validate::record::Source(word).files)
+    for (const auto& file : source.all_files()) files.push_back(file);
   return files;
 }
 

@@ -26,6 +26,11 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
 /// truncated files.
 Record read_mat_record(const std::filesystem::path& file, const RecordBase& base, const ReadOptions& options);
 
+/// Returns the record of a PSCAD run, `source.config` its .inf. The channels are text columns: names are
+/// those of the output channels (with the group if several channels have the name), units those of the .inf.
+/// Throws InputError with the problems of the .inf and of all .out files.
+Record read_pscad_record(const SourceFile& source, const RecordBase& base, const ReadOptions& options);
+
 /// Returns the bytes of a file; throws InputError if it cannot be read.
 std::string read_bytes(const std::filesystem::path& file);
 

@@ -37,6 +37,7 @@ Record read_file(const SourceFile& file, const RecordBase& base, ReadOptions opt
   using Format = SourceFile::Format;
   Record record = file.format == Format::comtrade ? read_comtrade(file, base, options)
                   : file.format == Format::hdf5   ? read_hdf5_record(file.path, base, options)
+                  : file.format == Format::pscad  ? read_pscad_record(file, base, options)
                   : file.format == Format::matlab
                       ? read_mat_record(file.path, base, options)
                       : parse_record(read_bytes(file.path), file.path.string(), base, options);

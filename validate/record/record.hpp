@@ -146,14 +146,14 @@ struct ReadOptions {
 };
 
 /// Reads a record from its source. The extension determines the format: .cfg/.dat or .cff COMTRADE, .mat
-/// MATLAB, .h5 a run of `swingbank simulate`, otherwise text columns (validate/record/README.md lists names,
-/// units and dialects). "FILE#TERMINAL" selects one of several terminals; "FILE+FILE" joins the columns of
-/// several files of one event. Columns that are not measurements of the terminal are listed in `ignored`.
-/// Repairs (shorter gaps, repeated stamps, clock adjustments) are listed in `notes`. check_record
-/// (validate/check/check.hpp) judges the content. Throws InputError with every fault of the file and its
-/// lines or bytes: missing, repeated or unitless columns, lines of unequal length, values that are not finite
-/// or missing for longer than kLongestGap, times that do not increase or are unevenly spaced, too few
-/// samples.
+/// MATLAB, .h5 a run of `swingbank simulate`, .inf (or one of its .out) PSCAD, otherwise text columns
+/// (validate/record/README.md lists names, units and dialects). "FILE#TERMINAL" selects one of several
+/// terminals; "FILE+FILE" joins the columns of several files of one event. Columns that are not measurements
+/// of the terminal are listed in `ignored`. Repairs (shorter gaps, repeated stamps, clock adjustments) are
+/// listed in `notes`. check_record (validate/check/check.hpp) judges the content. Throws InputError with
+/// every fault of the file and its lines or bytes: missing, repeated or unitless columns, lines of unequal
+/// length, values that are not finite or missing for longer than kLongestGap, times that do not increase or
+/// are unevenly spaced, too few samples.
 Record read_record(const Source& source, const RecordBase& base, const ReadOptions& options = {});
 
 /// Reads a record, with the staged events that apply to the file. If the breaker is open during the whole

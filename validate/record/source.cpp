@@ -1,5 +1,7 @@
 #include "validate/record/source.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -35,6 +37,16 @@ std::vector<std::filesystem::path> parts_of(const std::filesystem::path& named) 
   return parts;
 }
 
+/// Returns the .inf of a PSCAD output file "case_01.out"; empty if the name has no number or there is none.
+std::filesystem::path inf_of(const std::filesystem::path& out) {
+  const std::string stem = out.stem().string();
+  const auto digits = stem.find_last_not_of("0123456789");
+  if (digits == std::string::npos || stem[digits] != '_' || digits + 1 == stem.size()) return {};
+  const auto inf =
+      partner(out.parent_path() / (stem.substr(0, digits) + out.extension().string()), ".inf", ".INF");
+  return std::filesystem::exists(inf) ? inf : std::filesystem::path();
+}
+
 SourceFile source_file(const std::filesystem::path& named) {
   using Format = SourceFile::Format;
   SourceFile file;
@@ -51,14 +63,34 @@ SourceFile source_file(const std::filesystem::path& named) {
     file.config = e == ".cfg" ? file.path : partner(file.path, ".cfg", ".CFG");
     file.data = e == ".dat" ? file.path : partner(file.path, ".dat", ".DAT");
   }
-  file.format = e == ".cfg" || e == ".dat" || e == ".cff" ? Format::comtrade
-                : e == ".h5" || e == ".hdf5"              ? Format::hdf5
-                : e == ".mat"                             ? Format::matlab
-                                                          : Format::text;
+  if (e == ".inf") file.config = file.path;
+  if (e == ".out") file.config = inf_of(file.path);
+  const bool pscad = (e == ".inf" || e == ".out") && !file.config.empty();
+  file.format = pscad                                       ? Format::pscad
+                : e == ".cfg" || e == ".dat" || e == ".cff" ? Format::comtrade
+                : e == ".h5" || e == ".hdf5"                ? Format::hdf5
+                : e == ".mat"                               ? Format::matlab
+                                                            : Format::text;
   return file;
 }
 
 }  // namespace
+
+std::filesystem::path pscad_part(const std::filesystem::path& inf, std::size_t number) {
+  const bool capitals = inf.extension() == ".INF";
+  return inf.parent_path() /
+         fmt::format("{}_{:02}{}", inf.stem().string(), number, capitals ? ".OUT" : ".out");
+}
+
+std::vector<std::filesystem::path> SourceFile::all_files() const {
+  if (config.empty()) return {path};
+  std::vector<std::filesystem::path> files = {config};
+  if (!data.empty()) files.push_back(data);
+  if (format != Format::pscad) return files;
+  for (std::size_t n = 1; std::filesystem::exists(pscad_part(config, n)); ++n)
+    files.push_back(pscad_part(config, n));
+  return files;
+}
 
 Source::Source(const std::filesystem::path& named) : path(named) {
   std::vector<std::filesystem::path> parts = parts_of(named);

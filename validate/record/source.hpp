@@ -9,12 +9,14 @@ namespace swingbank::validate::record {
 /// One file of a record, or one of its terminals.
 struct SourceFile {
   /// Format of the file, by its extension.
-  enum class Format { text, comtrade, hdf5, matlab };
+  enum class Format { text, comtrade, hdf5, matlab, pscad };
   Format format = Format::text;        ///< format of the file
   std::filesystem::path path;          ///< without the terminal
-  std::filesystem::path config, data;  ///< the .cfg and .dat file of a COMTRADE pair; otherwise empty
+  std::filesystem::path config, data;  ///< .cfg and .dat of a COMTRADE pair, or .inf of PSCAD; else empty
   std::string name;                    ///< file name as given, without folder: "run.h5#G2"
   std::string terminal;                ///< "G2" of "run.h5#G2"; empty: none is selected
+  /// Returns every file that is read.
+  [[nodiscard]] std::vector<std::filesystem::path> all_files() const;
 };
 
 /// Location of a record: "FILE", "FILE#TERMINAL", or the files of one event, "FILE+FILE".
@@ -32,5 +34,8 @@ struct Source {
   std::string name;               ///< name of the record without folders: "a.csv#NORTH", "a.csv+b.csv"
   std::vector<SourceFile> files;  ///< in the order given, at least one
 };
+
+/// Returns the path of PSCAD's output file `number`, from 1, beside its .inf: "case_01.out" of "case.inf".
+std::filesystem::path pscad_part(const std::filesystem::path& inf, std::size_t number);
 
 }  // namespace swingbank::validate::record

@@ -19,6 +19,14 @@ bool ends_with(const std::string& name, std::string_view ending) {
                             [](unsigned char a, char b) { return std::tolower(a) == b; });
 }
 
+/// Returns whether the name is that of a PSCAD output file, "case_01.out".
+bool is_part_of_pscad(std::string_view name) {
+  if (!name.ends_with(".out")) return false;
+  name.remove_suffix(4);
+  const auto at = name.find_last_not_of("0123456789");
+  return at != std::string_view::npos && name[at] == '_' && at + 1 < name.size();
+}
+
 [[noreturn]] void refuse(const std::string& what, const std::string& name, const std::string& why,
                          const std::string& remedy) {
   throw InputError({what, name, why, remedy});
@@ -98,6 +106,9 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
            "save it as CSV in UTF-8 (PowerShell: Out-File -Encoding utf8)");
   if (bytes.starts_with("MATLAB 5.0") || bytes.starts_with("MATLAB 7.3"))
     refuse("a MATLAB file", name, "its name does not end in .mat", "rename it");
+  if (is_part_of_pscad(name) && bytes.substr(0, 4096).find('\0') == std::string_view::npos)
+    refuse("an output file of PSCAD without its .inf", name, "the .inf names the channels of the .out files",
+           "copy NAME.inf beside NAME_01.out, and give either of them");
   if (ends_with(name, ".out") || ends_with(name, ".outx"))
     refuse("an output file of PSS/E", name, "its format is not public",
            "export it as CSV in PSS/E's Python: dyntools.CHNF('run.out').csvout(outfile='run.csv')");
@@ -122,8 +133,10 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xD0\xCF\x11\xE0") || ends_with(name, ".xlsx"))
     refuse("a spreadsheet", name, "only text in columns is read", "save the sheet as CSV (UTF-8)");
   if (ends_with(name, ".psout"))
-    refuse("an output file of PSCAD", name, "only its CSV is read",
-           "export it as CSV: in PSCAD's graph, Copy Data to File; or with the Python package mhi-psout");
+    refuse(
+        "a .psout file of PSCAD", name, "its format is not public",
+        "let PSCAD write .inf and .out (Project Settings, Runtime), or export it as CSV: in the graph, Copy "
+        "Data to File; or with the Python package mhi-psout");
   if (bytes.starts_with("\x89HDF"))
     refuse("an HDF5 file", name, "its name does not end in .h5", "rename it, if swingbank simulate wrote it");
   const std::string_view head = bytes.substr(0, 4096);
@@ -133,7 +146,7 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
            "save it as CSV in UTF-8");
   if (nothing > 0)
     refuse("a file that is no text", name, "it holds bytes that no text has",
-           "give CSV, COMTRADE (.cfg or .dat of a pair, .cff) or HDF5 (.h5)");
+           "give CSV, COMTRADE (.cfg or .dat of a pair, .cff), PSCAD output (.inf) or HDF5 (.h5)");
 }
 
 std::string as_utf8(std::string_view text, std::vector<std::string>& notes) {
