@@ -41,28 +41,6 @@ void take_rounding(std::vector<double>& residual, double step) {
   for (double& r : residual) r = std::copysign(std::max(0.0, std::abs(r) - step / 2), r);
 }
 
-const std::vector<double>& played(const playin::Playback& p, playin::Output o) {
-  switch (o) {
-    case playin::Output::P:
-      return p.P;
-    case playin::Output::Q:
-      return p.Q;
-    case playin::Output::speed:
-      return p.speed;
-    case playin::Output::Efd:
-      return p.Efd;
-    case playin::Output::Pm:
-      return p.Pm;
-    case playin::Output::gate:
-      return p.gate;
-    case playin::Output::V:
-      return p.V;
-    case playin::Output::Ifd:
-      break;
-  }
-  return p.Ifd;
-}
-
 /// Returns whether the record has no noise: before the event P and Q equal the model's within the
 /// interpolation error.
 bool is_noiseless(const plant::PlantModel& model, const EventComparison& e) {
@@ -99,7 +77,7 @@ void add_interpolation(const plant::PlantModel& model, const playin::PlayInOptio
   }
   for (const playin::Output o : {playin::Output::P, playin::Output::Q, playin::Output::speed,
                                  playin::Output::Efd, playin::Output::Ifd}) {
-    const auto &fine = played(e.playback, o), &other = played(coarse, o);
+    const auto &fine = playin::output_of(e.playback, o), &other = playin::output_of(coarse, o);
     if (fine.empty() || fine.size() != other.size()) continue;
     std::vector<double> third(fine.size());
     std::ranges::transform(other, fine, third.begin(), [](double a, double b) { return (a - b) / 3; });
@@ -149,8 +127,8 @@ void measure_channels(const plant::PlantModel& model, PlaybackInput input,
   };
   if (e.record.component != record::Component::plant || e.record.breaker()) {
     for (const playin::Output o : playin::compared_outputs(e.record, true))
-      add_output(o, playin::measured_values(e.record, o), played(e.playback, o), o != playin::Output::gate,
-                 true);
+      add_output(o, playin::measured_values(e.record, o), playin::output_of(e.playback, o),
+                 o != playin::Output::gate, true);
     return;
   }
   if (!power) {

@@ -41,23 +41,6 @@ class Phases {
   double begins_ = 0, over_ = 0, after_fault_ = -1e300, after_clearing_ = -1e300;
 };
 
-/// Returns the errors in one window [% of MVA]; 1 pu is `percent` of them.
-JudgedErrors errors_of(const EventComparison& e, const ChannelComparison& c, Phase phase,
-                       const Phases& phases, double percent) {
-  JudgedErrors row{e.record.name, c.name, phase, 0, {}, {}, !e.switchings.empty()};
-  for (std::size_t k = 0; k < c.residual.size(); ++k) {
-    if (phases.of(k) != phase) continue;
-    const double error = percent * c.residual[k], size = std::abs(error);
-    ++row.samples;
-    row.errors.me += error;
-    row.errors.mae += size;
-    if (!(size <= row.errors.mxe)) row.errors.mxe = size;  // NaN propagates
-  }
-  if (row.samples > 0) row.errors.me /= row.samples, row.errors.mae /= row.samples;
-  if (!std::isfinite(row.errors.mae)) row.errors.mxe = row.errors.mae;
-  return row;
-}
-
 /// Returns the deviation of a channel after the last switching; none if it is too small to be judged.
 std::optional<Movement> movement_of(const EventComparison& e, const ChannelComparison& c,
                                     const Phases& phases, double percent, double limit) {
@@ -148,6 +131,23 @@ std::string_view JudgedErrors::window() const {
   return phase == Phase::pre_fault ? "start of record" : "rest of record";
 }
 
+JudgedErrors errors_in(const EventComparison& e, const ChannelComparison& c, Phase phase,
+                       const thresholds::Acceptance& by, double percent) {
+  const Phases phases(e, by);
+  JudgedErrors row{e.record.name, c.name, phase, 0, {}, {}, !e.switchings.empty()};
+  for (std::size_t k = 0; k < c.residual.size(); ++k) {
+    if (phases.of(k) != phase) continue;
+    const double error = percent * c.residual[k], size = std::abs(error);
+    ++row.samples;
+    row.errors.me += error;
+    row.errors.mae += size;
+    if (!(size <= row.errors.mxe)) row.errors.mxe = size;  // NaN propagates
+  }
+  if (row.samples > 0) row.errors.me /= row.samples, row.errors.mae /= row.samples;
+  if (!std::isfinite(row.errors.mae)) row.errors.mxe = row.errors.mae;
+  return row;
+}
+
 Fitness not_judged(const thresholds::Acceptance& by, double mva, const std::string& why) {
   Fitness f;
   f.by = by;
@@ -171,7 +171,7 @@ Fitness judge_fitness(const std::vector<EventComparison>& events, double mva,
         f.movements.push_back(std::move(*m));
       }
       for (const Phase phase : thresholds::kPhases) {
-        JudgedErrors row = errors_of(e, c, phase, phases, percent);
+        JudgedErrors row = errors_in(e, c, phase, by, percent);
         if (row.samples == 0) continue;
         row.limits = by.of(c.name == "P" ? 0 : 1, phase);
         exceed += thresholds::exceeding(row.errors, row.limits);

@@ -51,6 +51,10 @@ struct Fitness {
   }
 };
 
+/// Returns the errors of one channel in the window of `phase` [%], without limits; 1 pu is `percent` of them.
+/// Samples that are not compared, and those that `by` leaves out, are excluded.
+JudgedErrors errors_in(const EventComparison& event, const ChannelComparison& channel,
+                       thresholds::Phase phase, const thresholds::Acceptance& by, double percent);
 /// Judges the events' errors by the limits `by`. `mva` is the base of the plant's machine. Samples that are
 /// not compared are excluded, and so are those that the limits exclude after the first and last switching.
 Fitness judge_fitness(const std::vector<EventComparison>& events, double mva,
