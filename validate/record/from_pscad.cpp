@@ -188,11 +188,11 @@ class OutReader {
     }
   }
   void report(std::size_t c) {
-    constexpr std::size_t kShown = 3;
+    constexpr std::size_t kRunsShown = 3;
     const std::string& name = part_.chosen[c].second->name;
-    for (std::size_t k = 0; k < std::min(kShown, runs_[c].size()); ++k) {
+    for (std::size_t k = 0; k < std::min(kRunsShown, runs_[c].size()); ++k) {
       const BadRun& run = runs_[c][k];
-      const std::size_t more = k + 1 == kShown ? runs_[c].size() - kShown : 0;
+      const std::size_t more = k + 1 == kRunsShown ? runs_[c].size() - kRunsShown : 0;
       problems_.add(fmt::format("{} = '{}'", name, run.cell),
                     run.first == run.last ? fmt::format("{}:{}", part_.file, run.first)
                                           : fmt::format("{}:{}-{}", part_.file, run.first, run.last),

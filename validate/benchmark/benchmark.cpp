@@ -1,0 +1,172 @@
+#include "validate/benchmark/benchmark.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "base/in_parallel.hpp"
+#include "base/stop_signal.hpp"
+#include "validate/event/event.hpp"
+#include "validate/playin/component.hpp"
+#include "validate/playin/play_in.hpp"
+
+namespace swingbank::validate::benchmark {
+namespace {
+
+using record::Record;
+using thresholds::Phase;
+
+/// Returns the staged event of a reference step, on the record's base.
+record::StagedEvent staged_event(const Test& t, const plant::PlantModel& model, const Record& r) {
+  record::StagedEvent e;
+  const bool power = t.kind == TestKind::p_reference_step;
+  e.kind = power ? record::StagedEvent::Kind::pref_step : record::StagedEvent::Kind::vref_step;
+  e.time = t.event;
+  if (t.end) e.until = *t.end;
+  e.size = power ? *t.size * model.plant.mva / r.base.mva : *t.size;
+  return e;
+}
+
+/// Returns the windows in order of time; without an end of the event there is none during it.
+std::vector<compare::Window> windows_of(const Test& t, const Record& r) {
+  const Interval pre = t.pre.value_or(Interval{r.t.front(), t.event}),
+                 post = t.post.value_or(Interval{t.last(), r.t.back()});
+  std::vector<compare::Window> all = {{"pre", pre.first, pre.second}};
+  if (t.end) {
+    const Interval during = t.during.value_or(Interval{t.event, *t.end});
+    all.push_back({"during", during.first, during.second});
+  }
+  all.push_back({"post", post.first, post.second});
+  return all;
+}
+
+/// Adds a problem for each time of a test that its record does not contain.
+void check_windows(const Test& t, const Record& r, Problems& problems) {
+  const double slack = r.step(), from = r.t.front(), to = r.t.back();
+  const auto check = [&](double a, double b, const std::string& what) {
+    if (!(a >= from - slack && b <= to + slack))
+      problems.add(fmt::format("{} of test '{}', {:g} to {:g} s", what, t.name, a, b), t.where,
+                   fmt::format("{} contains {:g} to {:g} s", r.name, from, to),
+                   "correct the times, or give a longer record");
+  };
+  check(t.event, t.last(), "event");
+  if (t.pre) check(t.pre->first, t.pre->second, "window pre");
+  if (t.during) check(t.during->first, t.during->second, "window during");
+  if (t.post) check(t.post->first, t.post->second, "window post");
+}
+
+/// Returns the record of a test: its windows and the times of its event.
+Record record_of_test(const Test& t, const plant::PlantModel& model, Record r) {
+  const auto windows = windows_of(t, r);
+  r = record::stretch(std::move(r), windows.front().from, windows.back().to);
+  r.name = t.name;
+  r.switched = {t.event};
+  if (t.end) r.switched.push_back(*t.end);
+  if (is_reference_step(t.kind)) r.staged = {staged_event(t, model, r)};
+  return r;
+}
+
+/// Marks the samples outside of all windows, and lost ones.
+std::vector<char> outside_windows(const Record& r, const std::vector<compare::Window>& windows) {
+  std::vector<char> out(r.t.size(), 0);
+  const double slack = 1e-4 * r.step();
+  for (std::size_t k = 0; k < out.size(); ++k)
+    out[k] = (!r.lost.empty() && r.lost[k]) || std::ranges::none_of(windows, [&](const compare::Window& w) {
+               return r.t[k] >= w.from - slack && r.t[k] <= w.to + slack;
+             });
+  return out;
+}
+
+compare::ChannelComparison channel_of(playin::Output output, const std::vector<double>& reference,
+                                      const std::vector<double>& modelled, const compare::EventComparison& e,
+                                      double per_machine) {
+  compare::ChannelComparison c;
+  const compare::ChannelUnit unit = compare::channel_unit(output, e.record.base);
+  const bool power = output == playin::Output::P || output == playin::Output::Q;
+  c.name = playin::output_name(output);
+  c.unit = unit.name;
+  c.scale = unit.scale;
+  c.size = power ? per_machine : 1.0;
+  c.measured = reference;
+  c.modelled = modelled;
+  c.residual.resize(reference.size());
+  std::ranges::transform(modelled, reference, c.residual.begin(), std::minus<>());
+  const auto before = compare::window_error(e.record.t, c.residual, e.left_out, e.windows.front(), true, 0);
+  c.noise = std::sqrt(std::max(0.0, before.rms * before.rms - before.mean * before.mean));
+  c.whole = compare::window_error(e.record.t, c.residual, e.left_out,
+                                  {"", e.record.t.front(), e.record.t.back()}, true, c.noise);
+  return c;
+}
+
+TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& given) {
+  TestResult result{.test = t, .event = {}, .rows = {}, .fitness = {}, .failure = {}};
+  compare::EventComparison& e = result.event;
+  e.record = record_of_test(t, in.model, given);
+  const double mva = in.model.plant.mva, per_machine = mva / e.record.base.mva;
+  e.windows = windows_of(t, e.record);
+  e.left_out = outside_windows(e.record, e.windows);
+  const plant::PlantModel& reference = in.against ? *in.against : in.model;
+  const event::FitEvent prepared =
+      event::prepare_events(reference, {e.record}, {.step_shape = switching::StepShape::sharp}).front();
+  e.switchings = prepared.switchings;
+  const playin::VoltageCurve curve(prepared.record, prepared.switchings);
+  const auto response = [&](const plant::PlantModel& of) {
+    return playin::play_in(of.under_test(), prepared.record, curve);
+  };
+  playin::Playback other;
+  if (in.against) other = response(*in.against);
+  try {
+    e.playback = response(in.model);
+  } catch (const InputError& error) {
+    result.failure = error.problems().front().sentence();
+    result.fitness = compare::not_judged(in.by, mva, result.failure);
+    return result;
+  }
+  const auto outputs = in.against ? std::vector{playin::Output::P, playin::Output::Q}
+                                  : playin::compared_outputs(e.record, true);
+  for (const playin::Output o : outputs)
+    e.channels.push_back(channel_of(o,
+                                    in.against ? output_of(other, o) : playin::measured_values(e.record, o),
+                                    output_of(e.playback, o), e, per_machine));
+  for (const auto& c : e.channels)
+    for (const Phase phase : thresholds::kPhases)
+      if (compare::JudgedErrors row = compare::errors_in(e, c, phase, in.by, 100 / c.size); row.samples > 0) {
+        if (has_limits(c.name)) row.limits = in.by.of(c.name == "P" ? 0 : 1, phase);
+        result.rows.push_back(std::move(row));
+      }
+  result.fitness = compare::judge_fitness({e}, mva, in.by);
+  return result;
+}
+
+}  // namespace
+
+std::string_view window_name(Phase phase) {
+  return phase == Phase::pre_fault ? "pre" : phase == Phase::fault ? "during" : "post";
+}
+
+std::vector<TestResult> run_benchmark(const std::vector<Test>& tests, const BenchmarkInputs& in) {
+  Problems problems;
+  for (std::size_t k = 0; k < tests.size(); ++k) check_windows(tests[k], in.records[k], problems);
+  problems.raise();
+  std::vector<TestResult> results(tests.size());
+  in_parallel(
+      tests.size(),
+      [&](std::size_t k) {
+        interruption_point();
+        results[k] = run_test(tests[k], in, in.records[k]);
+      },
+      [&](int done, std::size_t k) {
+        if (in.progress)
+          in.progress(event::Phase::playing, tests[k].name, done, static_cast<int>(tests.size()));
+      });
+  return results;
+}
+
+bool passes(const std::vector<TestResult>& results) {
+  return std::ranges::all_of(results, &TestResult::passes);
+}
+
+}  // namespace swingbank::validate::benchmark

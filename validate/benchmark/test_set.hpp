@@ -1,0 +1,78 @@
+#pragma once
+// Tests of a benchmark and their file (TOML): kind, record, time of the event and windows of each test.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/problem.hpp"
+#include "validate/plant/plant_model.hpp"
+
+namespace swingbank::validate::benchmark {
+
+/// Disturbance of a test.
+enum class TestKind {
+  voltage_dip,
+  voltage_swell,
+  voltage_step,
+  frequency_step,
+  frequency_ramp,
+  phase_step,
+  v_reference_step,
+  q_reference_step,
+  p_reference_step,
+};
+constexpr int kTestKinds = 9;               ///< number of kinds
+std::string_view kind_name(TestKind kind);  ///< "voltage_dip"
+std::string_view size_unit(TestKind kind);  ///< unit of Test::size: "pu", "Hz", "Hz/s", "deg"
+bool is_reference_step(TestKind kind);      ///< whether a reference of the plant is stepped
+
+/// Time interval [s of the record].
+using Interval = std::pair<double, double>;
+
+/// One test.
+struct Test {
+  std::string name;                             ///< unique in its set; letters, digits, '-' and '_'
+  TestKind kind = TestKind::voltage_dip;        ///< disturbance
+  double event = 0;                             ///< beginning of the disturbance [s of the record]
+  std::optional<double> end = {};               ///< its end [s]; none: permanent
+  std::optional<double> size = {};              ///< [size_unit()]; of powers in pu of the plant's MVA
+  std::optional<Interval> pre = {}, post = {};  ///< windows; none: the record before and after the event
+  std::optional<Interval> during = {};          ///< window; none: from event to end, if there is an end
+  std::filesystem::path record = {};            ///< empty: the record with the test's name, or none
+  std::string where;                            ///< place in the file, "tests.toml:12:1"
+  /// Returns the end of the disturbance, or its beginning if it is permanent [s].
+  [[nodiscard]] double last() const { return end.value_or(event); }
+};
+
+/// Operating point of tests without a record, on the plant's MVA.
+struct InitialPoint {
+  double P = 0, Q = 0, V = 1;  ///< out of the plant [pu of MVA]; voltage [pu]
+  double rate = 0;             ///< samples of the generated input per second
+};
+
+/// Tests of one file.
+struct TestSet {
+  std::filesystem::path file;           ///< the file
+  std::string name, source;             ///< name of the set; its source
+  std::vector<Test> tests;              ///< in the order of the file
+  std::optional<InitialPoint> initial;  ///< none: every test needs a record
+};
+
+/// Reads a tests file. Throws InputError with all its problems.
+TestSet load_tests(const std::filesystem::path& file);
+/// Parses a tests file; `name` is the file in messages.
+TestSet parse_tests(const std::string& text, const std::filesystem::path& name);
+
+/// Sets each test's record: its key `record` (a file of `given` with that name, else a path relative to the
+/// tests file), else the file of `given` whose name without extension is the test's. With `generate`, tests
+/// without a record keep none if the set has an operating point. Adds a problem for each test without input,
+/// and for each record that no test uses.
+void find_records(TestSet& set, const std::vector<std::string>& given, bool generate, Problems& problems);
+
+/// Adds a problem for each test whose reference step acts on no control of the plant. `file`: the plant file.
+void check_controls(const TestSet& set, const plant::PlantModel& model, Problems& problems);
+
+}  // namespace swingbank::validate::benchmark
