@@ -24,10 +24,13 @@ namespace swingbank::jobs {
 
 /// Options of a judgement: acceptance limits, signature and PDF output.
 struct Judging {
-  std::string accept, signed_by, pdf;
+  std::string accept, signed_by, pdf, standard;
   validate::thresholds::Acceptance by;
 
-  Option add_to(CommandLine& line) {
+  /// Declares the options; `preset`: the limits without --accept.
+  Option add_to(CommandLine& line,
+                const std::string& preset = validate::thresholds::acceptance_presets().front()) {
+    standard = preset;
     line.add("--pdf", pdf, "the page as PDF too, in this file, printed by Chromium");
     line.add_flag("--quiet", quiet, "print errors and the result only");
     line.add("--by", signed_by, "name of the signer: printed on the page with date and inputs");
@@ -35,14 +38,13 @@ struct Judging {
         "--accept", accept,
         fmt::format("limits by which the model is fit for purpose: a file (configs/accept/README.md), or "
                     "the preset {} (default: {})",
-                    fmt::join(validate::thresholds::acceptance_presets(), " or "),
-                    validate::thresholds::acceptance_presets().front()));
+                    fmt::join(validate::thresholds::acceptance_presets(), " or "), preset));
   }
   /// Reads the limits and checks --pdf; call it before the work. Throws InputError.
   void read() {
     Problems problems;
     try {
-      by = validate::thresholds::read_acceptance(accept);
+      by = validate::thresholds::read_acceptance(accept.empty() ? standard : accept);
     } catch (const InputError& error) {
       for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
     }

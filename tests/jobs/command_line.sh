@@ -51,7 +51,7 @@ awk '/^[A-Z].*:$/ {print}' "$work/help" >"$work/groups"
 printf '%s\n' 'Validate a plant:' 'Simulate and generate:' 'Train:' 'Benchmarks:' >"$work/expected"
 grep -vx 'Train:' "$work/groups" | diff <(grep -vx 'Train:' "$work/expected") - || fail "groups of swingbank --help"
 first=$(sed -n '/^Validate a plant:/,/^$/p' "$work/help" | awk '/^  / {print $1}' | xargs)
-[[ $first == 'inventory plant compare diagnose add calibrate serve export' ]] || fail "validation lists $first"
+[[ $first == 'inventory plant compare benchmark diagnose add calibrate serve export' ]] || fail "validation lists $first"
 [[ -n $(internal_commands) ]] || fail "no internal command is found"
 for command in $(internal_commands); do
   ! grep -q "^  $command " "$work/help" || fail "the internal command $command is listed"
