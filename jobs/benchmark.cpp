@@ -99,7 +99,7 @@ int run(Arguments& a) {
   Problems problems;
   benchmark::find_records(set, a.records, against.has_value(), problems);
   benchmark::check_controls(set, model, problems);
-  if (against) benchmark::check_controls(set, *against, problems);
+  if (against && a.against != a.model) benchmark::check_controls(set, *against, problems);
   problems.raise();
   const std::vector<record::Record> records = read_inputs(set, model, a, problems);
   std::vector<std::string> names = {kPage, kResult, kTable};

@@ -57,12 +57,18 @@ int count_passed(const std::vector<TestResult>& results) {
   return static_cast<int>(std::ranges::count_if(results, &TestResult::passes));
 }
 
-std::string verdict_sentence(const std::vector<TestResult>& results, const ReportContext& c) {
-  std::string text = fmt::format("{} of {} tests are within the limits {} ({}).", count_passed(results),
-                                 results.size(), c.by.name, c.by.source);
+/// Returns the test with the largest error relative to its limit; null if the model follows none.
+const TestResult* worst_test(const std::vector<TestResult>& results) {
   const TestResult* worst = nullptr;
   for (const TestResult& r : results)
     if (r.failure.empty() && (!worst || nearest_limit(r).ratio > nearest_limit(*worst).ratio)) worst = &r;
+  return worst;
+}
+
+std::string verdict_sentence(const std::vector<TestResult>& results, const ReportContext& c) {
+  std::string text = fmt::format("{} of {} tests are within the limits {} ({}).", count_passed(results),
+                                 results.size(), c.by.name, c.by.source);
+  const TestResult* worst = worst_test(results);
   if (worst)
     text += fmt::format(" {}: {}, in {}.",
                         nearest_limit(*worst).ratio > 1 ? "Largest violation" : "Nearest to its limit",
@@ -118,6 +124,24 @@ std::vector<double> in_units(std::vector<double> values, double scale, double sh
   return values;
 }
 
+/// Returns the chart of one channel: reference and model.
+report::Curves channel_chart(const TestResult& r, const compare::ChannelComparison& channel,
+                             const std::string& reference) {
+  report::Curves c = compare::event_chart(r.event, channel.name, channel.unit);
+  c.series.push_back({reference, report::Ink::measured, in_units(channel.measured, channel.scale)});
+  c.series.push_back({"model", report::Ink::fitted, in_units(channel.modelled, channel.scale)});
+  return c;
+}
+
+/// Adds P and Q of the worst test side by side.
+void large_charts(report::Document& page, const TestResult& r, const std::string& reference) {
+  page.subsection(fmt::format("{}: {}, {}", r.test.name, kind_name(r.test.kind), times_text(r.test)));
+  page.add(report::Begin{report::Begin::Layout::large});
+  for (const auto& channel : r.event.channels)
+    if (has_limits(channel.name)) page.add(channel_chart(r, channel, reference));
+  page.add(report::End{});
+}
+
 /// Adds the charts of one test: V and f as played in, then each channel.
 void charts(report::Document& page, const TestResult& r, const std::string& reference) {
   const compare::EventComparison& e = r.event;
@@ -130,12 +154,7 @@ void charts(report::Document& page, const TestResult& r, const std::string& refe
   };
   input("V", "pu", e.record.V);
   input("f", "Hz", in_units(compare::frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
-  for (const auto& channel : e.channels) {
-    report::Curves c = compare::event_chart(e, channel.name, channel.unit);
-    c.series.push_back({reference, report::Ink::measured, in_units(channel.measured, channel.scale)});
-    c.series.push_back({"model", report::Ink::fitted, in_units(channel.modelled, channel.scale)});
-    page.add(std::move(c));
-  }
+  for (const auto& channel : e.channels) page.add(channel_chart(r, channel, reference));
   page.add(report::End{});
 }
 
@@ -264,6 +283,8 @@ std::string html_report(const std::vector<TestResult>& results, const ReportCont
                          results.size() - static_cast<std::size_t>(count_passed(results)), results.size()),
       {verdict_sentence(results, c)},
       good ? report::Tone::good : report::Tone::bad});
+  if (const TestResult* worst = worst_test(results)) large_charts(page, *worst, c.reference);
+  page.section("Tests");
   page.add(summary_table(results));
   page.section("Errors");
   page.add(error_table(results, c));
