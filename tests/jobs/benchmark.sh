@@ -139,6 +139,37 @@ PYTHON
   --out standard >said 2>&1 && fail "a plant without a governor passes a step of its reference"
 grep -q "test 'p_reference_step'.*no control with that reference" said || fail "not refused: $(cat said)"
 
+# a converter: the shipped set, with its active and reactive current
+{
+  grep -v '^32 ' "$networks/ieee39_genrou.dyr"
+  echo "32 'REGCA1' 1 1 0.02 10 0.9 0.4 1.22 1.2 0.8 0.4 -1.3 0.02 0 100 -100 0.7 /"
+  echo "32 'REECB1' 1 0 0 1 1 0 -99 99 0.02 -0.02 0.02 2 1.1 -1.1 0 0.05 0.6 -0.6 1.1 0.9 0.1 1 2 20 0.02 99 -99 1 0 1.3 0.02 /"
+  echo "32 'REPCA1' 1 0 0 0 '0 ' 0 0 1 0.02 2 1 0 0.05 0.7 0 0 0 0.1 -0.1 0 0 0.6 -0.6 1 0.05 0.25 -0.0006 0.0006 99 -99 1 0 0.1 20 0 /"
+} >case.dyr
+"$swingbank" plant --raw "$networks/ieee39_genrou.raw" --dyr case.dyr --bus 32 --out converter.toml >/dev/null 2>&1
+sed 's/^Kqv = .*/Kqv = 1.5/' converter.toml >other_gain.toml
+code=0
+"$swingbank" benchmark --model other_gain.toml --against converter.toml --out currents --quiet --json \
+  --tests "$SWINGBANK_SOURCE/configs/benchmark/converter.toml" >currents.json || code=$?
+((code == 3)) || fail "exit code $code of another gain of the converter"
+/usr/bin/python3 - <<'PYTHON'
+import csv, json
+report = json.load(open("currents.json"))
+assert len(report["tests"]) == 12
+base = 100 / report["model"]["mva"]  # P and Q of the curves are per unit on the records' base of 100 MVA
+for r in csv.DictReader(open("currents/curves-voltage_dip_050.csv")):
+    for current, power in (("Ip", "P"), ("Iq", "Q")):
+        for of in "reference", "model":
+            own = float(r[f"{power}_{of}_pu"]) * base / float(r["V_pu"])
+            assert abs(own - float(r[f"{current}_{of}_pu"])) < 1e-6, r
+for row in report["tests"][1]["errors"]:
+    assert (row["limits_percent"] is None) == (row["channel"] in ("Ip", "Iq"))
+step = next(t for t in report["tests"] if t["name"] == "q_reference_step")
+moved = [float(r["Q_reference_pu"]) * base for r in csv.DictReader(open("currents/curves-q_reference_step.csv"))]
+assert abs(moved[0] - 0.1) < 1e-6 and abs(moved[-1] - 0.2) < 5e-3, (moved[0], moved[-1])
+assert step["passes"] is True
+PYTHON
+
 # bad input: every problem at once, and no file
 out=none
 refused() { "$swingbank" benchmark --out "$out" "$@"; }

@@ -80,16 +80,25 @@ std::vector<char> outside_windows(const Record& r, const std::vector<compare::Wi
   return out;
 }
 
-compare::ChannelComparison channel_of(playin::Output output, const std::vector<double>& reference,
-                                      const std::vector<double>& modelled, const compare::EventComparison& e,
-                                      double per_machine) {
-  compare::ChannelComparison c;
-  const compare::ChannelUnit unit = compare::channel_unit(output, e.record.base);
+/// Name, unit, units in 1 pu, and nominal value [pu] of a channel.
+struct ChannelSpec {
+  std::string name, unit;
+  double scale, size;
+};
+ChannelSpec spec_of(playin::Output output, const record::RecordBase& base, double per_machine) {
+  const compare::ChannelUnit unit = compare::channel_unit(output, base);
   const bool power = output == playin::Output::P || output == playin::Output::Q;
-  c.name = playin::output_name(output);
-  c.unit = unit.name;
-  c.scale = unit.scale;
-  c.size = power ? per_machine : 1.0;
+  return {std::string(playin::output_name(output)), unit.name, unit.scale, power ? per_machine : 1.0};
+}
+
+compare::ChannelComparison channel_of(const ChannelSpec& spec, const std::vector<double>& reference,
+                                      const std::vector<double>& modelled,
+                                      const compare::EventComparison& e) {
+  compare::ChannelComparison c;
+  c.name = spec.name;
+  c.unit = spec.unit;
+  c.scale = spec.scale;
+  c.size = spec.size;
   c.measured = reference;
   c.modelled = modelled;
   c.residual.resize(reference.size());
@@ -99,6 +108,28 @@ compare::ChannelComparison channel_of(playin::Output output, const std::vector<d
   c.whole = compare::window_error(e.record.t, c.residual, e.left_out,
                                   {"", e.record.t.front(), e.record.t.back()}, true, c.noise);
   return c;
+}
+
+/// Returns P or Q over V [pu of MVA at 1 pu of voltage]: the active or reactive current.
+std::vector<double> current_of(const std::vector<double>& power, const Record& r, double per_machine) {
+  std::vector<double> current(power.size());
+  for (std::size_t k = 0; k < power.size(); ++k) current[k] = power[k] / per_machine / r.V[k];
+  return current;
+}
+
+/// Adds the active and the reactive current of a converter, which grid codes judge during a fault, unless the
+/// voltage is zero. They have no limits here.
+void add_currents(compare::EventComparison& e, double per_machine) {
+  for (std::size_t k = 0; k < e.record.t.size(); ++k)
+    if (!e.left_out[k] && !(e.record.V[k] > 0)) return;
+  const std::size_t powers = e.channels.size();
+  for (std::size_t c = 0; c < powers; ++c) {
+    const std::string name = e.channels[c].name;
+    if (name != "P" && name != "Q") continue;
+    e.channels.push_back(channel_of({name == "P" ? "Ip" : "Iq", "pu", 1, 1},
+                                    current_of(e.channels[c].measured, e.record, per_machine),
+                                    current_of(e.channels[c].modelled, e.record, per_machine), e));
+  }
 }
 
 TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& given) {
@@ -128,9 +159,10 @@ TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& give
   const auto outputs = in.against ? std::vector{playin::Output::P, playin::Output::Q}
                                   : playin::compared_outputs(e.record, true);
   for (const playin::Output o : outputs)
-    e.channels.push_back(channel_of(o,
+    e.channels.push_back(channel_of(spec_of(o, e.record.base, per_machine),
                                     in.against ? output_of(other, o) : playin::measured_values(e.record, o),
-                                    output_of(e.playback, o), e, per_machine));
+                                    output_of(e.playback, o), e));
+  if (in.model.plant.machine.effect->converter) add_currents(e, per_machine);
   for (const auto& c : e.channels)
     for (const Phase phase : thresholds::kPhases)
       if (compare::JudgedErrors row = compare::errors_in(e, c, phase, in.by, 100 / c.size); row.samples > 0) {

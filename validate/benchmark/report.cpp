@@ -124,13 +124,28 @@ std::vector<double> in_units(std::vector<double> values, double scale, double sh
   return values;
 }
 
+constexpr std::size_t kChartPoints = 5000;  ///< most points of a curve: several for each pixel of a screen
+
+/// Returns the chart with every n-th sample, so that a page of long EMT records can be opened.
+report::Curves thinned(report::Curves c) {
+  const std::size_t every = c.x.size() / kChartPoints + 1;
+  const auto thin = [every](std::vector<double>& values) {
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < values.size(); k += every) values[kept++] = values[k];
+    values.resize(kept);
+  };
+  thin(c.x);
+  for (auto& series : c.series) thin(series.y);
+  return c;
+}
+
 /// Returns the chart of one channel: reference and model.
 report::Curves channel_chart(const TestResult& r, const compare::ChannelComparison& channel,
                              const std::string& reference) {
   report::Curves c = compare::event_chart(r.event, channel.name, channel.unit);
   c.series.push_back({reference, report::Ink::measured, in_units(channel.measured, channel.scale)});
   c.series.push_back({"model", report::Ink::fitted, in_units(channel.modelled, channel.scale)});
-  return c;
+  return thinned(std::move(c));
 }
 
 /// Adds P and Q of the worst test side by side.
@@ -150,7 +165,7 @@ void charts(report::Document& page, const TestResult& r, const std::string& refe
   const auto input = [&](const char* name, const char* unit, std::vector<double> y) {
     report::Curves c = compare::event_chart(e, std::string(name) + ", played in", unit);
     c.series.push_back({reference, report::Ink::measured, std::move(y)});
-    page.add(std::move(c));
+    page.add(thinned(std::move(c)));
   };
   input("V", "pu", e.record.V);
   input("f", "Hz", in_units(compare::frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
@@ -296,11 +311,11 @@ std::string html_report(const std::vector<TestResult>& results, const ReportCont
     all.movements = std::move(movements);
     page.add(compare::movement_table(all));
   }
-  page.section("Tests");
+  page.section("Curves");
   page.add(report::Paragraph{
       "Voltage and angle of the reference are played into the model. Drag across a chart to "
       "zoom (all charts of a test follow); double-click to see all of it. The grey band is the "
-      "event.",
+      "event. Curves of long records have every n-th sample, at most 5000; errors are those of all samples.",
       report::Paragraph::Kind::hint});
   for (const TestResult& r : results) {
     page.add(report::Begin{report::Begin::Layout::fold,
