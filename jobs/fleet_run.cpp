@@ -65,8 +65,8 @@ std::string describe(const fleet::FleetRow& row, bool was_there) {
   return text + (was_there ? " (existed already)" : "");
 }
 
-int write_reports(const FleetCommand& c, const fleet::Fleet& fleet,
-                  const std::vector<fleet::FleetRow>& rows) {
+int write_reports(const FleetCommand& c, const fleet::Fleet& fleet, std::vector<fleet::FleetRow> rows) {
+  fleet::sort_worst_first(rows);
   const fs::path folder = c.out;
   const std::string json = fleet::fleet_json(fleet, rows);
   write_file(folder / "fleet.json", json);
@@ -134,7 +134,7 @@ int run_fleet(const FleetCommand& c, const mpi::items::Ranks& ranks) {
     return kSubmitAgain;
   }
   int code = 0;
-  if (first) code = guarded("diagnose", [&] { return write_reports(c, fleet, rows); });
+  if (first) code = guarded("diagnose", [&] { return write_reports(c, fleet, std::move(rows)); });
   return ranks.from_first(code);
 }
 

@@ -17,7 +17,10 @@ sed '50,69s/,[^,]*/,NaN/' "$work/records/e2.csv" >"$work/records/nan.csv"
   plant nobody '"records/x*.csv"'
 } >"$work/fleet.toml"
 expect 1 fleet "$work/fleet.toml" "$work/ranks" 2
-/usr/bin/python3 - "$work/ranks" <<'PYTHON'
+! grep 'failure at rank' "$work/ranks.log" || fail "a rank failed"
+"$swingbank" compare --model "$work/whole.toml" --records "$work"/records/e[12].csv --power-only --json \
+  --out "$work/alone" >"$work/compare.json" || fail "compare: exit code $?"
+/usr/bin/python3 - "$work/ranks" "$work/compare.json" <<'PYTHON'
 import csv, json, sys
 folder = sys.argv[1]
 fleet = json.load(open(folder + "/fleet.json"))
@@ -29,7 +32,16 @@ words = {"cut": "cut.csv:101", "nan": "nan.csv:50", "gone": "e9.csv", "alone": "
 for name, where in words.items():
     assert plants[name]["verdict"] == "failed" and where in plants[name]["sentence"], plants[name]
 rows = list(csv.DictReader(open(folder + "/fleet.csv")))
-assert [r["plant"] for r in rows] == sorted(plants) and rows[-1]["verdict"] == "adequate"
+failed = sorted(name for name in plants if name != "sound")
+assert [r["plant"] for r in rows] == failed + ["sound"] == [p["plant"] for p in fleet["plants"]], rows
+assert all(r["fit_for_purpose"] == "not judged" and r["report"] == "" for r in rows[:-1]), rows
+# the error of the submitted model is that of compare
+errors = json.load(open(sys.argv[2]))["fitness"]["errors_percent_of_mva"]
+largest = max(errors, key=lambda e: e["mxe"])
+row = rows[-1]
+assert abs(float(row["largest_error [% of MVA]"]) - largest["mxe"]) < 1e-5 * largest["mxe"], (row, largest)
+assert [row["channel"], row["window"], row["event"]] == [largest[k] for k in ("channel", "window", "record")], row
+assert (row["verdict"], row["fit_for_purpose"], row["report"]) == ("adequate", "yes", "sound/report.html"), row
 whole = json.load(open(folder + "/sound/diagnosis.json"))
 assert whole["sentence"] == sound["sentence"]
 PYTHON

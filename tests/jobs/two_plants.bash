@@ -8,7 +8,7 @@ fleet_file=$work/fleet.toml
   model=whole.toml plant b '"records/e[34].csv"'
 } >"$fleet_file"
 # whole_fleet COMMAND...: runs it; true if both plants are complete
-whole_fleet() { "$@" >"$work/log" 2>&1 && grep -q '^2 plants: 2 adequate' "$work/log"; }
+whole_fleet() { "$@" >"$work/log" 2>&1 && grep -q '^2 plants: .*, 2 adequate[.]$' "$work/log"; }
 # same_fleet OUT: equals $work/whole, without leftover files
 same_fleet() {
   local file

@@ -1,6 +1,7 @@
 #pragma once
 // Report of a fleet as terminal text, JSON, CSV and page. It contains neither times nor the distribution of
-// the work, so that interrupted and uninterrupted runs give identical files.
+// the work, so that interrupted and uninterrupted runs give identical files. The rows are in the order of
+// sort_worst_first().
 #include <string>
 #include <vector>
 
@@ -10,16 +11,21 @@
 
 namespace swingbank::validate::fleet {
 
-/// Table: plant, verdict, effect, side, evidence, errors, chance; a failed plant has its first problem
-/// instead.
+/// Sorts the rows, the worst first: by verdict (unexplained, missing effect, adequate after refit but not
+/// fit for purpose as submitted, failed, adequate), then by the largest error of the submitted model [% of
+/// MVA], the normalised RMS of the refitted one, and the name.
+void sort_worst_first(std::vector<FleetRow>& rows);
+/// Table: plant, verdict, missing effect, side, largest error of the submitted model, fitness for purpose,
+/// errors [multiples of the noise], chance.
 report::Table fleet_table(const std::vector<FleetRow>& rows);
-/// "3 plants: 1 adequate, 1 with an effect named, 1 unexplained, 0 failed."
+/// "3 plants: 0 unexplained, 1 with a missing effect, 0 adequate after refit, 1 failed, 1 adequate."
 std::string fleet_summary(const std::vector<FleetRow>& rows);
 /// Caution about false verdicts.
 std::string fleet_caution(const std::vector<FleetRow>& rows);
 
 std::string fleet_text(const std::vector<FleetRow>& rows);
 std::string fleet_json(const Fleet& fleet, const std::vector<FleetRow>& rows);
+/// CSV with a heading, units in brackets (validate/fleet/README.md describes the columns).
 std::string fleet_csv(const std::vector<FleetRow>& rows);
 /// Page with links to every plant's report.html, relative to its folder.
 std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows);

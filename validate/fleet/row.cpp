@@ -16,6 +16,19 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 double number_of(const json& j, const char* key) {
   return j.at(key).is_null() ? kNaN : j.at(key).get<double>();
 }
+
+json error_json(const SubmittedError& e) {
+  return {{"percent_of_mva", e.percent},
+          {"channel", e.channel},
+          {"window", e.window},
+          {"event", e.event},
+          {"fit_for_purpose", e.fit}};
+}
+SubmittedError read_error(const json& j) {
+  return {number_of(j, "percent_of_mva"), j.at("channel"), j.at("window"), j.at("event"),
+          j.at("fit_for_purpose")};
+}
+
 }  // namespace
 
 FleetRow failed_row(const std::string& plant, const std::string& why) {
@@ -23,7 +36,7 @@ FleetRow failed_row(const std::string& plant, const std::string& why) {
   row.plant = plant;
   row.verdict = "failed";
   row.side = "none";
-  row.evidence = row.left = row.unseen_before = row.unseen_after = row.chance = kNaN;
+  row.error.percent = row.evidence = row.left = row.unseen_before = row.unseen_after = row.chance = kNaN;
   row.sentence = why;
   return row;
 }
@@ -36,6 +49,7 @@ json row_json(const FleetRow& r) {
           {"equivalent", r.equivalent},
           {"probabilities", r.probabilities},
           {"side", r.side},
+          {"submitted", error_json(r.error)},
           {"evidence", r.evidence},
           {"normalised_rms_refitted", r.left},
           {"unseen_normalised_rms_before", r.unseen_before},
@@ -57,6 +71,7 @@ FleetRow read_row(const std::string& text, const std::string& where) {
             j.at("equivalent"),
             j.at("probabilities"),
             j.at("side"),
+            read_error(j.at("submitted")),
             number_of(j, "evidence"),
             number_of(j, "normalised_rms_refitted"),
             number_of(j, "unseen_normalised_rms_before"),

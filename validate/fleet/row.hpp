@@ -8,7 +8,14 @@
 namespace swingbank::validate::fleet {
 
 /// Format of plant.json; part of the hash of a plant's inputs, so that older results are computed again.
-inline constexpr const char* kPlantFormat = "swingbank-fleet-plant-3";
+inline constexpr const char* kPlantFormat = "swingbank-fleet-plant-4";
+
+/// Largest error of P and Q of the submitted model, and its verdict on fitness for purpose.
+struct SubmittedError {
+  double percent = 0;                  ///< absolute value [% of the machine's MVA]; NaN: not judged
+  std::string channel, window, event;  ///< where it is; empty: not judged
+  std::string fit = "not judged";      ///< fit for purpose: "yes", "no" or "not judged"
+};
 
 /// Row of the fleet's table.
 struct FleetRow {
@@ -18,6 +25,7 @@ struct FleetRow {
   std::vector<std::string> equivalent;          ///< as Diagnosis::equivalent
   std::map<std::string, double> probabilities;  ///< of the explanations in the credible set
   std::string side;
+  SubmittedError error;
   double evidence = 0;  ///< 2 ln(Bayes factor) of the first effect; NaN: none was named
   double left = 0;      ///< normalised RMS of the refitted model without an effect
   double unseen_before = 0, unseen_after = 0;  ///< normalised RMS over held-out events; NaN: not judged

@@ -98,8 +98,20 @@ std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
   return sha256(text);
 }
 
-FleetRow row_of(const diagnose::Diagnosis& d) {
+/// Returns the largest error of the submitted model and its verdict on fitness for purpose.
+fleet::SubmittedError submitted_error(const compare::Fitness& f) {
+  fleet::SubmittedError worst{kNaN, {}, {}, {}};
+  if (!f.not_judged.empty()) return worst;
+  worst.fit = f.fit ? "yes" : "no";
+  for (const auto& row : f.rows)
+    if (!(row.errors.mxe <= worst.percent))  // NaN is replaced by any error
+      worst = {row.errors.mxe, row.channel, std::string(row.window()), row.event, worst.fit};
+  return worst;
+}
+
+FleetRow row_of(const diagnose::Diagnosis& d, const compare::Fitness& submitted) {
   FleetRow row;
+  row.error = submitted_error(submitted);
   row.verdict = diagnose::verdict_name(d.verdict);
   row.effects = d.effects;
   row.equivalent = d.equivalent;
@@ -197,15 +209,14 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
     options.prior_sd = plant.prior_sd;
     options.events.measured_states = !plant.power_only;
     const diagnose::Diagnosis d = diagnose::diagnose(l.model, std::move(l.records), options);
-    o.row = row_of(d);
+    const auto played = diagnose::play_models(l.model, d, thresholds::read_acceptance(""));
+    o.row = row_of(d, played.front().fitness);
     o.row.plant = plant.name;
     o.row.inputs = inputs;
     const report::Provenance rows = diagnose::diagnosis_provenance(l.model, d, command_of(plant, l.files));
     fs::remove_all(temporary);
     write_file(temporary / "diagnosis.json", json_text(diagnose::diagnosis_json(l.model, d, rows), 1) + "\n");
-    write_file(temporary / "report.html",
-               diagnose::diagnosis_html(l.model, d, rows,
-                                        diagnose::play_models(l.model, d, thresholds::read_acceptance(""))));
+    write_file(temporary / "report.html", diagnose::diagnosis_html(l.model, d, rows, played));
     std::string notes;
     for (const auto& note : l.notes) notes += note + "\n";
     if (!notes.empty()) write_file(temporary / "notes.txt", notes);

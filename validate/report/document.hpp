@@ -19,6 +19,7 @@ struct Cell {
   double shade = -1;      ///< 0 (good) to 1 (bad); -1: none
   std::string link = {};  ///< target of a link; empty: none
   std::string hint = {};  ///< shown while the pointer is on the cell; empty: none
+  std::string id = {};    ///< target of links; empty: none
   /// Constructs a cell without shade.
   Cell(std::string t)
       : text(std::move(t)) {}  // NOLINT(google-explicit-constructor): a cell is mostly its text
@@ -33,6 +34,7 @@ struct Table {
   std::vector<std::string> header;      ///< headings of the columns
   std::vector<std::vector<Cell>> rows;  ///< [row][column]
   bool heat = false;                    ///< narrow cells, for a heat map
+  bool sortable = false;                ///< a script lets the reader sort by a column and filter the rows
 };
 
 /// Role of a curve, which determines its colour and line: measured samples are points.
@@ -95,6 +97,7 @@ struct Paragraph {
   std::string text;         ///< content
   Kind kind = Kind::plain;  ///< kind
   bool in_markdown = true;  ///< whether Markdown contains it
+  std::string link = {};    ///< target of a link; empty: none
 };
 /// Verdict that opens the document: at most eight words, and the reasons.
 struct Opening {
@@ -179,7 +182,7 @@ struct Document {
 };
 
 /// Returns a self-contained page: it fetches nothing, works on telephones and in print, and contains scripts
-/// only if it has curves. All texts are escaped; SVG is not.
+/// only if it has curves or sortable tables. All texts are escaped; SVG is not.
 std::string html(const Document& document);
 /// Returns the document as Markdown, without curves, bars, scatter plots and data.
 std::string markdown(const Document& document);

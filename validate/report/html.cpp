@@ -35,7 +35,12 @@ std::string cell_attributes(const Cell& cell) {
     text = " class=\"cell within\"";
   else if (cell.shade > 0)
     text = fmt::format(" class=\"cell\" style=\"--shade-of:{:.2f}\"", std::min(cell.shade, 1.0));
+  if (!cell.id.empty()) text += fmt::format(" id=\"{}\"", escape(cell.id));
   return cell.hint.empty() ? text : text + fmt::format(" title=\"{}\"", escape(cell.hint));
+}
+
+std::string linked(const std::string& text, const std::string& link) {
+  return link.empty() ? escape(text) : fmt::format("<a href=\"{}\">{}</a>", escape(link), escape(text));
 }
 
 /// Formats six significant digits: more than a screen resolves, and a third of the full size.
@@ -57,7 +62,7 @@ class Renderer {
     static constexpr std::array kClass = {"", " class=\"note\"", " class=\"hint\"", " class=\"command\""};
     const bool command = p.kind == Paragraph::Kind::command;
     body += fmt::format("<p{}>{}{}{}</p>\n", kClass.at(static_cast<std::size_t>(p.kind)),
-                        command ? "Next: <code>" : "", escape(p.text), command ? "</code>" : "");
+                        command ? "Next: <code>" : "", linked(p.text, p.link), command ? "</code>" : "");
   }
   void operator()(const Opening& a) {
     body += fmt::format("<p class=\"headline {}\">{}</p>\n", tone_class(a.tone), escape(a.headline));
@@ -80,7 +85,10 @@ class Renderer {
     body += "</nav>\n";
   }
   void operator()(const Table& table) {
-    body += fmt::format("<div class=\"scroll\"><table{}>", table.heat ? " class=\"heat\"" : "");
+    sortable += table.sortable;
+    body += fmt::format("<div class=\"scroll\"><table{}>", table.heat       ? " class=\"heat\""
+                                                           : table.sortable ? " class=\"sortable\""
+                                                                            : "");
     if (!table.caption.empty()) body += fmt::format("<caption>{}</caption>", escape(table.caption));
     body += "<thead><tr>";
     for (std::size_t i = 0; i < table.header.size(); ++i) {
@@ -92,10 +100,7 @@ class Renderer {
     for (const auto& row : table.rows) {
       body += "<tr>";
       for (const auto& cell : row)
-        body += fmt::format("<td{}>{}</td>", cell_attributes(cell),
-                            cell.link.empty()
-                                ? escape(cell.text)
-                                : fmt::format("<a href=\"{}\">{}</a>", escape(cell.link), escape(cell.text)));
+        body += fmt::format("<td{}>{}</td>", cell_attributes(cell), linked(cell.text, cell.link));
       body += "</tr>\n";
     }
     body += "</tbody></table></div>\n";
@@ -169,7 +174,7 @@ class Renderer {
   }
 
   std::string body;
-  int charts = 0;
+  int charts = 0, sortable = 0;
 
  private:
   std::vector<const char*> ends_;
@@ -216,6 +221,7 @@ std::string html(const Document& document) {
   if (renderer.charts > 0)
     for (const char* script : {"uPlot.iife.min.js", "curves.js", "report.js"})
       out += "<script>\n" + std::string(asset(script).text) + "</script>\n";
+  if (renderer.sortable > 0) out += "<script>\n" + std::string(asset("table.js").text) + "</script>\n";
   return out + "</body></html>\n";
 }
 

@@ -47,7 +47,7 @@ std::string markdown(const Table& table) {
 
 std::string csv(const Table& table) {
   const auto quoted = [](const std::string& s) {
-    if (s.find_first_of(",\"\n") == std::string::npos) return s;
+    if (s.find_first_of(",\"\r\n") == std::string::npos) return s;
     std::string r = "\"";
     for (const char c : s) r += c == '"' ? "\"\"" : std::string(1, c);
     return r + "\"";

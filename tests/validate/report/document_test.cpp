@@ -66,6 +66,18 @@ TEST(DocumentTest, IncludesScriptsOnlyWithCurves) {
     EXPECT_NE(text.find(asset(file).text), std::string::npos) << file;
   }
 }
+TEST(DocumentTest, SortableTableHasAScript) {
+  Document page{"a", "b"};
+  Table table{"", {"h"}, {{"c"}}};
+  page.add(table);
+  EXPECT_EQ(html(page).find("<script"), std::string::npos);
+  table.sortable = true;
+  page.add(table);
+  const std::string text = html(page);
+  EXPECT_THAT(text, HasSubstr("<table class=\"sortable\">"));
+  EXPECT_FALSE(asset("table.js").text.empty());
+  EXPECT_THAT(text, HasSubstr(std::string(asset("table.js").text)));
+}
 TEST(DocumentTest, LegendShowsMeasuredAsPoints) {
   const std::string text = html(with_curves("c"));
   EXPECT_THAT(text, HasSubstr("<span class=\"key measured\"></span>c"));
