@@ -1,4 +1,5 @@
-// Python's Calibration and Addition: fits of a plant to records, without and with an added effect.
+// Python's Calibration, ParameterSelection and Addition: fits of a plant to records, without and with an
+// added effect.
 #include <fmt/format.h>
 
 #include "base/json.hpp"
@@ -8,12 +9,13 @@
 #include "validate/add/add.hpp"
 #include "validate/add/report.hpp"
 #include "validate/calibrate/report.hpp"
+#include "validate/calibrate/wrong_parameters.hpp"
 #include "validate/event/component_model.hpp"
 
 namespace swingbank::python {
 namespace {
 
-using calibrate::Calibration, add::Addition;
+using calibrate::Calibration, calibrate::WrongParameters, add::Addition;
 
 /// What a fit takes from Python.
 struct FitArguments {
@@ -57,6 +59,28 @@ std::string html_of(const Calibration& c) {
          table_html(calibrate::event_table(c.events)) + "</div>";
 }
 
+std::vector<fit::FittedParameter> selected(const WrongParameters& w) {
+  std::vector<fit::FittedParameter> all;
+  for (const auto& p : w.found.wrong) all.push_back(p.fit);
+  return all;
+}
+
+std::map<std::string, double> evidence_of(const WrongParameters& w) {
+  std::map<std::string, double> all;
+  for (const auto& p : w.found.wrong) all[p.fit.full_name()] = p.evidence;
+  return all;
+}
+
+std::map<std::string, std::vector<std::string>> tied_of(const WrongParameters& w) {
+  std::map<std::string, std::vector<std::string>> all;
+  for (const auto& p : w.found.wrong) all[p.fit.full_name()] = p.tied;
+  return all;
+}
+
+std::string html_of(const WrongParameters& w) {
+  return "<div>" + verdict_html(w.sentence, w.is_adequate()) + parameters_html(selected(w)) + "</div>";
+}
+
 std::string html_of(const Addition& a) {
   return "<div>" + verdict_html(a.sentence, a.adequate && a.earns) + parameters_html(a.parameters) +
          table_html(add::addition_table(a)) + "</div>";
@@ -86,6 +110,37 @@ void bind_calibration(py::module_& module) {
       .def("__repr__", [](const Calibration& c) { return "<swingbank.Calibration: " + c.sentence + ">"; });
 }
 
+void bind_selection(py::module_& module) {
+  py::class_<WrongParameters, std::shared_ptr<WrongParameters>>(
+      module, "ParameterSelection", "Smallest set of parameters that must change to explain the records.")
+      .def_property_readonly(
+          "plant", [](const WrongParameters& w) { return plant_of(w.model); },
+          "Plant with these parameters changed and all others unchanged.")
+      .def_property_readonly("adequate", &WrongParameters::is_adequate,
+                             "Whether only noise remains with these parameters changed.")
+      .def_readonly("sentence", &WrongParameters::sentence, "Result in words.")
+      .def_property_readonly("parameters", &selected,
+                             "Selected parameters, a list of FittedParameter, the strongest evidence first.")
+      .def_property_readonly("evidence", &evidence_of,
+                             "Rise of chi-square with one of them at its given value, by name [-].")
+      .def_property_readonly(
+          "tied", &tied_of,
+          "Names of parameters that explain the records equally well in its place, by name.")
+      .def_property_readonly(
+          "before", [](const WrongParameters& w) { return w.found.before; },
+          "Reduced chi-square of the given plant [-].")
+      .def_property_readonly(
+          "after", [](const WrongParameters& w) { return w.found.fit.reduced_chi2(); },
+          "Reduced chi-square with these parameters changed [-].")
+      .def(
+          "to_dict", [](const WrongParameters& w) { return from_json(json_text(calibrate::wrong_json(w))); },
+          "Returns what the selection adds to calibrate.json.")
+      .def("_repr_html_", [](const WrongParameters& w) { return html_of(w); })
+      .def("__str__", [](const WrongParameters& w) { return calibrate::wrong_text(w); })
+      .def("__repr__",
+           [](const WrongParameters& w) { return "<swingbank.ParameterSelection: " + w.sentence + ">"; });
+}
+
 void bind_addition(py::module_& module) {
   py::class_<Addition, std::shared_ptr<Addition>>(module, "Addition",
                                                   "An effect added to a plant and fitted.")
@@ -109,16 +164,19 @@ void bind_addition(py::module_& module) {
       .def("__repr__", [](const Addition& a) { return "<swingbank.Addition: " + a.sentence + ">"; });
 }
 
-std::shared_ptr<Calibration> calibrate_plant(const Plant& self, const py::object& records,
-                                             const FitArguments& arguments, const py::object& progress) {
+py::object calibrate_plant(const Plant& self, const py::object& records, const FitArguments& arguments,
+                           bool sparse, const py::object& progress) {
   const auto samples = samples_of(records_of(self, records), false);
   const auto callback = std::make_shared<Callback>(progress);
-  return without_lock(
-      [&] {
-        return std::make_shared<Calibration>(
-            calibrate::calibrate(plant::as_submitted(self), samples, options_of(arguments, callback)));
-      },
-      {callback});
+  const auto fitted = [&](const auto& fit) {
+    return py::cast(without_lock(
+        [&] {
+          auto result = fit(plant::as_submitted(self), samples, options_of(arguments, callback));
+          return std::make_shared<decltype(result)>(std::move(result));
+        },
+        {callback}));
+  };
+  return sparse ? fitted(calibrate::wrong_parameters) : fitted(calibrate::calibrate);
 }
 
 std::shared_ptr<Addition> add_to_plant(const Plant& self, const std::string& effect,
@@ -142,22 +200,25 @@ std::shared_ptr<Addition> add_to_plant(const Plant& self, const std::string& eff
 void bind_fits(py::module_& module, PlantClass& of) {
   bind_fitted(module);
   bind_calibration(module);
+  bind_selection(module);
   bind_addition(module);
   constexpr double prior = thresholds::parameters.prior_sd;
   of.def(
         "calibrate",
         [](const Plant& self, const py::object& records, const std::vector<std::string>& hold_out,
-           const std::vector<std::string>& fix, double prior_sd, bool power_only,
+           const std::vector<std::string>& fix, double prior_sd, bool power_only, bool sparse,
            const py::object& progress) {
-          return calibrate_plant(self, records, {hold_out, fix, prior_sd, power_only}, progress);
+          return calibrate_plant(self, records, {hold_out, fix, prior_sd, power_only}, sparse, progress);
         },
         py::arg("records"), py::kw_only(), py::arg("hold_out") = std::vector<std::string>{},
         py::arg("fix") = std::vector<std::string>{}, py::arg("prior_sd") = prior,
-        py::arg("power_only") = false, py::arg("progress") = py::none(),
+        py::arg("power_only") = false, py::arg("fewest") = false, py::arg("progress") = py::none(),
         "Fits the plant's parameters to records (or their paths), as `swingbank calibrate` does.\n\n"
         "`hold_out`: names of records excluded from the fit; `fix`: parameters that keep their values;\n"
         "`prior_sd`: prior standard deviation of the parameters, relative; `power_only`: the recorded\n"
-        "speed, Efd and Ifd are not compared; `progress`: called as progress(phase, item, done, total).\n"
+        "speed, Efd and Ifd are not compared; `fewest`: selects the smallest set of parameters that must\n"
+        "change, and returns a ParameterSelection in place of a Calibration; `progress`: called as\n"
+        "progress(phase, item, done, total).\n"
         "Ctrl-C, or an exception of `progress`, ends the fit.")
       .def(
           "add",

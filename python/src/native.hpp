@@ -80,12 +80,12 @@ std::string verdict_html(const std::string& sentence, bool good);
 using PlantClass = py::class_<Plant, std::shared_ptr<Plant>>;
 void bind_errors(py::module_& module);                            ///< InputError and KeyboardInterrupt
 PlantClass bind_plant(py::module_& module);                       ///< Plant, Parameter
-void bind_record(py::module_& module);                            ///< Record
+void bind_record(py::module_& module);                            ///< Record, Point
 void bind_playback(py::module_& module, PlantClass& plant);       ///< Playback, Comparison, Channel
 void bind_sensitivities(py::module_& module, PlantClass& plant);  ///< Sensitivities
-void bind_fits(py::module_& module, PlantClass& plant);           ///< Calibration, Addition
-void bind_diagnosis(py::module_& module, PlantClass& plant);      ///< Diagnosis
-void bind_effects(py::module_& module);                           ///< Effect
-void bind_simulation(py::module_& module);                        ///< Grid, Run
+void bind_fits(py::module_& module, PlantClass& plant);       ///< Calibration, ParameterSelection, Addition
+void bind_diagnosis(py::module_& module, PlantClass& plant);  ///< Diagnosis
+void bind_effects(py::module_& module);                       ///< Effect
+void bind_simulation(py::module_& module);                    ///< Grid, Run
 
 }  // namespace swingbank::python

@@ -1,4 +1,4 @@
-// Python's Record: files and arrays as checked records of a plant.
+// Python's Record and Point: files and arrays as checked records of a plant.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -9,19 +9,62 @@
 #include "python/src/interruptible.hpp"
 #include "python/src/native.hpp"
 #include "validate/check/record_set.hpp"
+#include "validate/event/point.hpp"
 
 namespace swingbank::python {
 namespace {
 
 using Columns = std::map<std::string, std::vector<double>>;
 
+/// Names of the columns that are read, by quantity.
+using ColumnNames = std::map<std::string, std::string>;
+
+/// Python's Point: a measuring point of several units, and the plant of the tested one.
+struct Point {
+  event::MeasuredPoint point;
+  std::shared_ptr<Plant> plant;
+};
+
 /// Reads and checks all files together, so that their problems are reported at once.
-std::vector<Record> read_files(const Plant& plant, const std::vector<std::string>& files) {
-  check::RecordSet set = without_lock([&] { return check::read_records(files, plant); });
+std::vector<Record> read_files(const Plant& plant, const std::vector<std::string>& files,
+                               const check::Preparing& prepare = {}) {
+  check::RecordSet set = without_lock([&] {
+    Problems problems;
+    check::RecordSet all = check::read_records(files, plant, problems, prepare);
+    problems.raise();
+    return all;
+  });
   std::vector<Record> all;
   for (std::size_t k = 0; k < files.size(); ++k)
     all.push_back({std::move(set.records[k]), std::move(set.warnings[k]), files[k]});
   return all;
+}
+
+/// Returns the plant whose records are read from the named columns.
+Plant with_columns(const Plant& plant, const ColumnNames& columns) {
+  Plant changed = plant;
+  for (const auto& [quantity, column] : columns) changed.reading.columns[quantity] = column;
+  return changed;
+}
+
+std::shared_ptr<Point> point_of(const std::filesystem::path& file, const Plant& plant) {
+  return std::make_shared<Point>(without_lock([&] {
+    auto changed = std::make_shared<Plant>(plant);
+    event::MeasuredPoint point = event::load_point(file, *changed);
+    return Point{std::move(point), changed};
+  }));
+}
+
+std::vector<std::string> names_of(const std::vector<event::OtherUnit>& units) {
+  std::vector<std::string> names;
+  for (const auto& unit : units) names.push_back(unit.model.name);
+  return names;
+}
+
+std::vector<Record> records_at(const Point& point, const std::vector<std::filesystem::path>& files,
+                               const ColumnNames& columns) {
+  return read_files(with_columns(*point.plant, columns), {files.begin(), files.end()},
+                    [&](record::Record r) { return event::of_tried_unit(point.point, std::move(r)); });
 }
 
 /// Returns the columns as the text of a CSV file, exact to the last bit.
@@ -122,15 +165,44 @@ std::vector<record::Record> samples_of(const std::vector<Record>& records, bool 
   return power_only ? compare::power_only(std::move(all)) : all;
 }
 
+namespace {
+
+void bind_point(py::module_& module) {
+  py::class_<Point, std::shared_ptr<Point>>(
+      module, "Point", "Measuring point behind which several units or a collector are connected.")
+      .def(py::init(&point_of), py::arg("file"), py::arg("plant"),
+           "Reads a point file (.toml) for the tested unit `plant`, as `--point` of the commands.\n\n"
+           "Raises InputError with every fault of the file.")
+      .def_readonly("plant", &Point::plant,
+                    "Plant of the tested unit; a control of it that measures at another bus measures here.")
+      .def_property_readonly(
+          "others", [](const Point& p) { return names_of(p.point.others); }, "Names of the other units.")
+      .def("records", &records_at, py::arg("files"), py::kw_only(), py::arg("columns") = ColumnNames{},
+           "Reads records of the point and returns those of the tested unit, a list of Record: at the\n"
+           "units' bus, less the simulated P [MW] and Q [Mvar] of the other units.\n\n"
+           "`columns`: as for Record. Raises InputError with the faults of all files.")
+      .def("__repr__", [](const Point& p) {
+        return fmt::format("<swingbank.Point {}: {} and {} other units>", p.point.file, p.plant->name,
+                           p.point.others.size());
+      });
+}
+
+}  // namespace
+
 void bind_record(py::module_& module) {
   py::class_<Record, std::shared_ptr<Record>>(
       module, "Record", "Measurements at one plant's terminal: uniformly sampled, checked, immutable.")
-      .def(py::init([](const std::filesystem::path& file, const Plant& plant) {
-             return std::make_shared<Record>(std::move(read_files(plant, {file.string()}).front()));
-           }),
-           py::arg("file"), py::arg("plant"),
-           "Reads a record (CSV, COMTRADE, PSS/E .plb, MATLAB, HDF5), whose bases are the plant's.\n\n"
-           "Raises InputError with every fault of the file and its lines.")
+      .def(
+          py::init([](const std::filesystem::path& file, const Plant& plant, const ColumnNames& columns) {
+            return std::make_shared<Record>(
+                std::move(read_files(with_columns(plant, columns), {file.string()}).front()));
+          }),
+          py::arg("file"), py::arg("plant"), py::kw_only(), py::arg("columns") = ColumnNames{},
+          "Reads a record (CSV, COMTRADE, PSS/E .plb, MATLAB, HDF5), whose bases are the plant's.\n\n"
+          "`columns`: names of the columns by quantity, {\"V\": \"BUS1.VPM [kV]\", \"P\": \"-PLOC\", \"t\": \"#1\"},\n"
+          "as `--columns` of the commands: the unit where the file names none, - for the opposite sign,\n"
+          "#2 for the second column. Columns without a name here are recognised.\n"
+          "Raises InputError with every fault of the file and its lines.")
       .def_static(
           "from_columns",
           [](const Columns& columns, const Plant& plant, const std::string& name) {
@@ -155,6 +227,7 @@ void bind_record(py::module_& module) {
         return fmt::format("<swingbank.Record {}: {} samples at {:.4g}/s>", r.record.name, r.record.samples(),
                            r.record.rate());
       });
+  bind_point(module);
 }
 
 }  // namespace swingbank::python

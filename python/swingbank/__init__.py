@@ -21,8 +21,10 @@ from ._native import (
     FittedParameter,
     Grid,
     Parameter,
+    ParameterSelection,
     Plant,
     Playback,
+    Point,
     Record,
     Run,
     Sensitivities,
@@ -36,8 +38,8 @@ from .prediction import Estimate, Prediction, predict
 __version__: str = _native.version
 __all__ = [
     "Addition", "Array", "Calibration", "Channel", "Comparison", "Dataset", "Diagnosis", "Effect", "EffectParameter",
-    "Estimate", "FittedParameter", "Grid", "InputError", "Parameter", "Plant", "Playback", "Prediction", "Problem",
-    "Record", "Run", "Sensitivities", "effects", "predict", "simulate",
+    "Estimate", "FittedParameter", "Grid", "InputError", "Parameter", "ParameterSelection", "Plant", "Playback",
+    "Point", "Prediction", "Problem", "Record", "Run", "Sensitivities", "effects", "predict", "simulate",
 ]
 
 _folder = _commands.folder()

@@ -47,6 +47,28 @@ class Fits(unittest.TestCase):
         self.assertEqual(got.plant[got.parameters[0].name], got.parameters[0].value)
         self.assertIn(got.parameters[0].name, got._repr_html_())
 
+    def test_sparse_parameter_selection(self):
+        true = self.plant.add("SEXS", RECORDS, power_only=True).plant
+        wrong = true.with_values({"SEXS.K": 0.5 * true["SEXS.K"]})
+        with tempfile.TemporaryDirectory() as folder:
+            wrong.save(pathlib.Path(folder) / "wrong.toml")
+            said = run_json("calibrate", "--fewest", "--model", pathlib.Path(folder) / "wrong.toml", "--records",
+                            *RECORDS, "--power-only", "--json", "--out", pathlib.Path(folder) / "out", codes=(0, 5))
+        got = wrong.calibrate(RECORDS, power_only=True, fewest=True)
+        self.assertEqual([p.name for p in got.parameters], ["SEXS.K"])
+        self.assertEqual([p["name"] for p in got.to_dict()["wrong"]], [p["name"] for p in said["wrong"]])
+        self.assertTrue(got.adequate)
+        self.assert_close(got.after, said["chi2_per_value"]["these_changed"])
+        self.assert_close(got.evidence["SEXS.K"], said["wrong"][0]["evidence_chi2"])
+        self.assertLess(got.after, got.before)
+        self.assertGreater(got.evidence["SEXS.K"], 10)
+        self.assertEqual(list(got.tied), ["SEXS.K"])
+        k = got.parameters[0]
+        self.assertTrue(k.low < true["SEXS.K"] < k.high, k)
+        self.assertEqual(got.plant["SEXS.K"], k.value)
+        self.assertEqual(got.plant["GENROU.H"], wrong["GENROU.H"])
+        self.assertIn("SEXS.K", got._repr_html_())
+
     def test_addition(self):
         said = self.command("add", "SEXS", "--hold-out", "avr_ev4.csv")
         got = self.plant.add("SEXS", RECORDS, hold_out=["avr_ev4.csv"], power_only=True)
