@@ -5,17 +5,23 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 folder=$SWINGBANK_SOURCE/packaging
 
+source "$(dirname "${BASH_SOURCE[0]}")/apptainer.bash"
 for section in post environment test runscript; do
-  { echo '#!/bin/sh'; awk -v wanted="%$section" '/^%/ {on = ($1 == wanted); next} on' "$folder/swingbank.def"; } >"$work/$section.sh"
+  { echo '#!/bin/sh'; section_of "$section"; } >"$work/$section.sh"
   (($(wc -l <"$work/$section.sh") > 1)) || fail "no %$section"
   sh -n "$work/$section.sh" || fail "%$section is no script"
   if command -v shellcheck >/dev/null; then shellcheck -s sh -S warning "$work/$section.sh" || fail "%$section"; fi
 done
 grep -q '^From: debian:12$' "$folder/swingbank.def" || fail "not Debian 12"
-preset=$(grep -o 'SWINGBANK_PRESET:-[a-z]*' "$work/post.sh" | head -1 | cut -d- -f2)
-grep -q "\"name\": \"$preset\"" "$SWINGBANK_SOURCE/CMakePresets.json" || fail "no preset $preset"
-grep -q -- --preset "$SWINGBANK_SOURCE/jobs/setup.sh" || fail "jobs/setup.sh has no --preset"
-grep -q '^libopenmpi-dev$' "$SWINGBANK_SOURCE/packages.txt" || fail "another MPI than the rule for hybrid containers says"
+# every file is a package of cmake/debian.cmake in the build folder of a preset
+section_of files >"$work/files"
+(($(wc -l <"$work/files") == 2)) || fail "%files: $(cat "$work/files")"
+while read -r file target; do
+  [[ $file =~ ^build/([a-z]+)/([a-z-]+)_\*\.deb$ && $target == /packages/ ]] || fail "%files: $file $target"
+  preset=${BASH_REMATCH[1]} package=${BASH_REMATCH[2]}
+  grep -q "\"name\": \"$preset\"" "$SWINGBANK_SOURCE/CMakePresets.json" || fail "no preset $preset"
+  grep -q "^swingbank_package([a-z]* $package " "$SWINGBANK_SOURCE/cmake/debian.cmake" || fail "no package $package"
+done <"$work/files"
 [[ $("$swingbank" effects) == *GENROU* ]] || fail "%test would fail"
 echo "ok: Apptainer definition"
 
