@@ -9,6 +9,8 @@
 #include <sstream>
 #include <string_view>
 
+#include "base/capitals.hpp"
+#include "base/detail/key_trace.hpp"
 #include "base/input_file.hpp"
 #include "base/nearest_word.hpp"
 
@@ -197,12 +199,26 @@ Config::Config(const std::string& text, const fs::path& name) : name_(name), tre
   }
 }
 
-bool Config::has(const std::string& key) const { return tree_->at(key) != nullptr; }
-bool Config::is_array(const std::string& key) const { return has(key) && tree_->at(key)->is_array(); }
-bool Config::is_table(const std::string& key) const { return has(key) && tree_->at(key)->is_table(); }
-bool Config::is_text(const std::string& key) const { return has(key) && tree_->at(key)->is_string(); }
+Config::Config(std::shared_ptr<KeyTrace> trace) : tree_(std::make_shared<Tree>()), trace_(std::move(trace)) {}
 
-std::vector<std::string> Config::keys(const std::string& table) const {
+bool Config::has(const std::string& key) const {
+  return trace_ ? trace_->present(key) : tree_->at(key) != nullptr;
+}
+bool Config::is_array(const std::string& key) const {
+  return trace_ ? trace_->arrays() : has(key) && tree_->at(key)->is_array();
+}
+bool Config::is_table(const std::string& key) const {
+  return trace_ ? !trace_->arrays() : has(key) && tree_->at(key)->is_table();
+}
+bool Config::is_text(const std::string& key) const {
+  return trace_ ? trace_->arrays() : has(key) && tree_->at(key)->is_string();
+}
+
+std::vector<std::string> Config::keys(const std::string& table) const { return keys(table, {}); }
+
+std::vector<std::string> Config::keys(const std::string& table, const std::vector<std::string>& known,
+                                      const std::string& opened_by) const {
+  if (trace_) return trace_->names(table, known, opened_by);
   std::vector<std::string> names;
   const toml::node* n = tree_->at(table);
   if (n != nullptr && n->is_table())
@@ -211,11 +227,11 @@ std::vector<std::string> Config::keys(const std::string& table) const {
 }
 
 std::string Config::where(const std::string& key) const {
-  return has(key) ? place(name_, tree_->at(key)->source().begin) : name_.string();
+  return tree_->at(key) != nullptr ? place(name_, tree_->at(key)->source().begin) : name_.string();
 }
 
 std::pair<unsigned, unsigned> Config::position(const std::string& key) const {
-  if (!has(key)) return {0, 0};
+  if (tree_->at(key) == nullptr) return {0, 0};
   const auto begin = tree_->at(key)->source().begin;
   return {begin.line, begin.column};
 }
@@ -225,6 +241,13 @@ void Config::ignore(const std::string& key) { tree_->asked.insert(key); }
 void Config::problem(const std::string& key, const std::string& what, const std::string& why,
                      const std::string& remedy) {
   problems_.add(what, where(key), why, remedy);
+}
+
+void Config::exclude(const std::string& key, const std::string& what, const std::string& why,
+                     const std::string& remedy) {
+  if (trace_ || !has(key)) return;
+  ignore(key);
+  problem(key, what, why, remedy);
 }
 
 template <class T>
@@ -246,6 +269,7 @@ bool Config::take(const std::string& key, T& value, const Range& range) {
 
 template <class T>
 T Config::require(const std::string& key, const Range& range) {
+  if (trace_) return trace_->leaf<T>(key, true, range);
   T value{};
   if (!take(key, value, range))
     problem(key, "missing key " + key, "it has no default",
@@ -256,21 +280,25 @@ T Config::require(const std::string& key, const Range& range) {
 
 template <class T>
 T Config::optional(const std::string& key, T otherwise, const Range& range) {
+  if (trace_) return trace_->leaf<T>(key, false, range, &otherwise);
   take(key, otherwise, range);
   return otherwise;
 }
 
-std::string Config::choice(const std::string& key, const std::vector<std::string>& words) {
+std::string Config::choice(const std::string& key, const std::vector<std::string>& words,
+                           const Range& about) {
+  if (trace_) return trace_->word(key, words, about, nullptr);
   if (!has(key)) {
     tree_->asked.insert(key);
     problem(key, "missing key " + key, "it has no default", "add it: one of " + list(words));
     return {};
   }
-  return choice(key, words, {});
+  return choice(key, words, std::string());
 }
 
 std::string Config::choice(const std::string& key, const std::vector<std::string>& words,
-                           const std::string& otherwise) {
+                           const std::string& otherwise, const Range& about) {
+  if (trace_) return trace_->word(key, words, about, &otherwise);
   std::string word = otherwise;
   if (!take(key, word, {}) || word.empty()) return word;
   if (std::find(words.begin(), words.end(), word) == words.end())
@@ -279,8 +307,24 @@ std::string Config::choice(const std::string& key, const std::vector<std::string
   return word;
 }
 
-fs::path Config::file(const std::string& key) {
-  const auto text = require<std::string>(key);
+std::string Config::branch(const std::string& key, const Branch& branch, const Range& about) {
+  if (trace_) return trace_->branch(key, branch, about);
+  std::vector<std::string> words = branch.words;
+  if (branch.any_case && is_text(key)) {
+    const std::string written = tree_->at(key)->value_or(std::string());
+    if (std::ranges::any_of(words, [&](const auto& w) { return capitals(w) == capitals(written); }))
+      words.push_back(written);
+  }
+  return choice(key, words);
+}
+
+std::vector<std::string> Config::table_names(const std::string& key, const Range& about) {
+  auto names = require<std::vector<std::string>>(key, about);
+  return trace_ ? std::vector<std::string>{kAnyName} : names;
+}
+
+fs::path Config::file(const std::string& key, const Range& about) {
+  const auto text = require<std::string>(key, about);
   if (text.empty()) return {};
   const fs::path path = fs::path(text).is_absolute() ? fs::path(text) : name_.parent_path() / text;
   if (!fs::is_regular_file(path))
@@ -290,6 +334,7 @@ fs::path Config::file(const std::string& key) {
 }
 
 std::pair<double, double> Config::interval(const std::string& key, const Range& range) {
+  if (trace_) return trace_->interval(key, range);
   const auto v = require<std::vector<double>>(key, range);
   if (v.size() == 2 && v[0] <= v[1]) return {v[0], v[1]};
   if (is_array(key) && v.size() != 2 && !v.empty())
@@ -302,6 +347,7 @@ std::pair<double, double> Config::interval(const std::string& key, const Range& 
 }
 
 void Config::raise() {
+  if (trace_) return;
   unknown(tree_->root, "", tree_->asked, name_, problems_);
   problems_.raise();
 }

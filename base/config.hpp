@@ -18,11 +18,25 @@
 
 namespace swingbank {
 
-/// Closed interval of the allowed values of a number.
+class KeyTrace;
+
+/// Closed interval of the allowed values of a number, and what a key means.
 struct Range {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   ///< ends of the interval [unit]
-  std::string unit = "";  ///< unit in messages; empty: none
+  std::string unit = "";     ///< unit in messages; empty: none
+  std::string meaning = "";  ///< definition of the key, in the schema (base/describe.hpp)
+};
+
+/// Name in place of any name of a table, where keys are described (base/describe.hpp).
+inline const std::string kAnyName = "*";
+
+/// Words of a text that determines the other keys of its table, such as the name of an effect.
+struct Branch {
+  std::vector<std::string> words;        ///< allowed words
+  std::vector<std::string> titles = {};  ///< their titles; empty: none
+  std::string opened_by = {};  ///< key of the file's own words, in the schema; empty: there are none
+  bool any_case = false;       ///< upper and lower case are the same
 };
 
 /// TOML file that is read key by key.
@@ -33,6 +47,9 @@ class Config {
   /// Parses `text`. Messages cite `name` as the file, and relative paths refer to its folder. Throws
   /// InputError if the text is not TOML.
   Config(const std::string& text, const std::filesystem::path& name);
+  /// Config without a file, which notes what it is asked for (base/describe.hpp). It is never sound and
+  /// raises nothing; it has every key that it is asked for, or none.
+  explicit Config(std::shared_ptr<KeyTrace> trace);
 
   /// Returns the value of a required key. T: bool, std::int64_t, double (integers are accepted), std::string,
   /// or a vector of the last three. Records a problem and returns T{} if the value is missing or wrong. The
@@ -44,13 +61,15 @@ class Config {
   template <class T>
   T optional(const std::string& key, T otherwise, const Range& range = {});
   /// Returns a text that must be one of `words`.
-  std::string choice(const std::string& key, const std::vector<std::string>& words);
+  std::string choice(const std::string& key, const std::vector<std::string>& words, const Range& about = {});
   /// The same, with `otherwise` if the key is missing.
   std::string choice(const std::string& key, const std::vector<std::string>& words,
-                     const std::string& otherwise);
+                     const std::string& otherwise, const Range& about = {});
+  /// Returns a text that must be one of the branch's words and determines the other keys of its table.
+  std::string branch(const std::string& key, const Branch& branch, const Range& about = {});
   /// Returns the path of a file; relative paths refer to the config's folder. Records a problem if no such
   /// file exists.
-  std::filesystem::path file(const std::string& key);
+  std::filesystem::path file(const std::string& key, const Range& about = {});
   /// Returns an interval [low, high], low <= high.
   std::pair<double, double> interval(const std::string& key, const Range& range = {});
 
@@ -64,6 +83,12 @@ class Config {
   [[nodiscard]] bool is_text(const std::string& key) const;
   /// Returns the keys of a table in alphabetical order; empty if there is no such table.
   [[nodiscard]] std::vector<std::string> keys(const std::string& table) const;
+  /// The same for a table whose keys may be `known` ones only, or others too beside the key `opened_by`. The
+  /// caller checks them.
+  [[nodiscard]] std::vector<std::string> keys(const std::string& table, const std::vector<std::string>& known,
+                                              const std::string& opened_by = {}) const;
+  /// Returns the texts of a required list. Each may be the name of a table beside the key.
+  std::vector<std::string> table_names(const std::string& key, const Range& about = {});
   /// Returns the place of a key's value, "file.toml:12:3", or the file's name if the key is missing.
   [[nodiscard]] std::string where(const std::string& key) const;
   /// Returns line and column of a key's value, {0, 0} if the key is missing.
@@ -71,10 +96,13 @@ class Config {
   /// Records a problem with a key's value.
   void problem(const std::string& key, const std::string& what, const std::string& why,
                const std::string& remedy);
+  /// Records a problem if the config has a key that excludes others.
+  void exclude(const std::string& key, const std::string& what, const std::string& why,
+               const std::string& remedy);
   /// Accepts a key or a table with any content, so that raise() does not report it as unknown.
   void ignore(const std::string& key);
   /// Whether no problem was recorded so far.
-  [[nodiscard]] bool sound() const { return problems_.empty(); }
+  [[nodiscard]] bool sound() const { return !trace_ && problems_.empty(); }
   /// Records every key that was never read as unknown, then throws InputError if there are problems.
   void raise();
   /// Returns the path of the config.
@@ -86,6 +114,7 @@ class Config {
   bool take(const std::string& key, T& value, const Range& range);
   std::filesystem::path name_;
   std::shared_ptr<Tree> tree_;
+  std::shared_ptr<KeyTrace> trace_;  ///< of a config without a file
   Problems problems_;
 };
 

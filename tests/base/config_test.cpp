@@ -104,6 +104,26 @@ TEST(StrictConfig, ReportsNumbersAsWritten) {
   EXPECT_THAT(s, HasSubstr("c = 7 at"));
 }
 
+TEST(StrictConfig, ReadsBranchesInAnyCaseOnRequest) {
+  Config c("a = 'genrou'\nb = 'genrou'\nc = 'GENROX'\n", "c.toml");
+  const Branch machines{.words = {"GENCLS", "GENROU"}, .any_case = true};
+  EXPECT_EQ(c.branch("a", machines), "genrou");
+  c.branch("b", {.words = {"GENROU"}});
+  c.branch("c", machines);
+  const std::string s = sentence_of(c);
+  EXPECT_THAT(s, Not(HasSubstr("a = 'genrou'")));
+  EXPECT_THAT(s, HasSubstr("b = 'genrou'"));
+  EXPECT_THAT(s, HasSubstr("did you mean GENROU"));
+}
+
+TEST(StrictConfig, RefusesExcludedKeys) {
+  Config c("size = 1\nnumber = 2\n", "c.toml");
+  c.require<double>("size");
+  c.exclude("number", "two sizes", "size gives another", "leave one out");
+  c.exclude("absent", "two sizes", "size gives another", "leave one out");
+  EXPECT_EQ(sentence_of(c), "two sizes at c.toml:2:10 (size gives another): leave one out");
+}
+
 TEST(StrictConfig, SyntaxErrorNamesItsLine) {
   try {
     Config c("a = 1\nb = \n", "c.toml");

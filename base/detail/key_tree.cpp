@@ -1,0 +1,183 @@
+#include "base/detail/key_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swingbank {
+namespace {
+
+using Json = KeyTree::Json;
+
+Json number_of(double v) {
+  constexpr double kExact = 1e15;  ///< largest integer that is written without exponent
+  if (v == std::floor(v) && std::abs(v) <= kExact) return static_cast<std::int64_t>(v);
+  return v;
+}
+
+Json schema_of(const KeyForm& form) {
+  Json one = {{"type", form.type}};
+  if (!form.words.empty()) one["enum"] = form.words;
+  if (std::isfinite(form.range.low)) one["minimum"] = number_of(form.range.low);
+  if (std::isfinite(form.range.high)) one["maximum"] = number_of(form.range.high);
+  if (form.list) {
+    one = {{"type", "array"}, {"items", one}};
+    if (form.size > 0) one["minItems"] = one["maxItems"] = form.size;
+  }
+  const std::string &unit = form.range.unit, &meaning = form.range.meaning;
+  if (const std::string text =
+          unit.empty() || unit == "-" ? meaning : meaning + (meaning.empty() ? "[" : " [") + unit + "]";
+      !text.empty())
+    one["description"] = text;
+  if (!form.otherwise.is_null() && !form.varies) one["default"] = form.otherwise;
+  return one;
+}
+
+bool is_any(const std::string& name) { return name == kAnyName || name == "[]"; }
+bool is_branch(const std::string& name) { return name.starts_with('='); }
+
+}  // namespace
+
+KeyTree& KeyTree::child(const std::string& name) {
+  const auto found =
+      std::ranges::find(children_, name, [](const auto& c) -> const std::string& { return c.first; });
+  if (found != children_.end()) return *found->second;
+  return *children_.emplace_back(name, std::make_unique<KeyTree>()).second;
+}
+
+KeyTree& KeyTree::at(const KeyPath& path) {
+  KeyTree* node = this;
+  for (const auto& name : path) node = &node->child(name);
+  return *node;
+}
+
+void KeyTree::touch(int pass) {
+  if (last_touched_ != pass) ++touched_;
+  last_touched_ = pass;
+}
+
+void KeyTree::add(const KeyTrace& pass) {
+  ++pass_;
+  for (const KeyTrace::Key& key : pass.keys) {
+    KeyTree* node = this;
+    std::vector<KeyTree*> way;
+    for (const auto& name : key.path) {
+      if (name != "[]") node->touch(pass_);
+      node = &node->child(name);
+      way.push_back(node);
+    }
+    const auto same = std::ranges::find_if(node->forms_, [&](const KeyForm& f) { return f.like(key.form); });
+    if (same == node->forms_.end())
+      node->forms_.push_back(key.form);
+    else if (same->otherwise.is_null())
+      same->otherwise = key.form.otherwise;
+    else if (!key.form.otherwise.is_null() && key.form.otherwise != same->otherwise)
+      same->varies = true;
+    if (!key.required) continue;
+    // A table with a required key is required too, unless it has any name or number.
+    for (std::size_t k = way.size(); k-- > 0 && !is_any(key.path[k]);) {
+      if (way[k]->last_needed_ != pass_) ++way[k]->needed_;
+      way[k]->last_needed_ = pass_;
+    }
+  }
+  for (const KeyDecision& decision : pass.decisions)
+    if (decision.values.empty() && decision.outcome == 0) at(decision.path).asked_for_ = true;
+  for (const KeyTrace::Table& table : pass.tables) {
+    KeyTree& node = at(table.path);
+    if (node.branch_.words.empty()) node.branch_ = table;
+  }
+}
+
+void KeyTree::collect(const KeyPath& here, bool required, std::set<KeyPath>& into) const {
+  for (const auto& [name, node] : children_) {
+    KeyPath path = here;
+    path.push_back(name);
+    if (!required || (node->always(*this) && !node->asked_for_)) into.insert(path);
+    node->collect(path, required, into);
+  }
+}
+
+std::set<KeyPath> KeyTree::paths(bool required) const {
+  std::set<KeyPath> all;
+  collect({}, required, all);
+  return all;
+}
+
+bool KeyTree::is_table() const {
+  return std::ranges::any_of(children_, [](const auto& c) { return c.first != "[]"; });
+}
+
+Json KeyTree::forms() const {
+  if (forms_.size() == 1) return schema_of(forms_.front());
+  Json any = Json::array(), all = Json::object();
+  for (const KeyForm& form : forms_) any.push_back(schema_of(form));
+  if (any.front().contains("description")) all["description"] = any.front()["description"];
+  for (Json& form : any)
+    if (form.value("description", "") == all.value("description", "")) form.erase("description");
+  all["anyOf"] = any;
+  return all;
+}
+
+Json KeyTree::object(const std::vector<const KeyTree*>& parts, const std::string& word,
+                     Json& definitions) const {
+  Json properties = Json::object(), required = Json::array(), others = false, conditions = Json::array();
+  for (const KeyTree* part : parts) {
+    for (const auto& [name, node] : part->children_) {
+      if (is_branch(name) || name == "[]") continue;
+      if (name == kAnyName) {
+        others = node->value(definitions);
+        continue;
+      }
+      properties[name] = node->value(definitions);
+      if (!word.empty() && part == this && node->is_table()) {  // a table that all branches share
+        definitions[name] = properties[name];
+        properties[name] = {{"$ref", "#/definitions/" + name}};
+      }
+      if (node->always(*part)) required.push_back(name);
+    }
+    for (const Json& condition : part->conditions_) conditions.push_back(condition);
+  }
+  if (!word.empty()) properties[branch_.key]["enum"] = Json::array({word});
+  if (branch_.key.empty() && !branch_.opened_by.empty()) others = true;
+  Json all = {{"type", "object"}, {"properties", properties}};
+  if (!required.empty()) all["required"] = required;
+  all["additionalProperties"] = others;
+  if (!conditions.empty()) all["allOf"] = conditions;
+  return all;
+}
+
+Json KeyTree::branches(Json& definitions) const {
+  Json one_of = Json::array();
+  for (std::size_t k = 0; k < branch_.words.size(); ++k) {
+    const std::string& word = branch_.words[k];
+    const auto found =
+        std::ranges::find(children_, "=" + word, [](const auto& c) -> const std::string& { return c.first; });
+    const KeyTree none;
+    Json keys = object({this, found == children_.end() ? &none : found->second.get()}, word, definitions);
+    if (k < branch_.titles.size()) keys["description"] = branch_.titles[k];
+    std::string name = word;
+    while (definitions.contains(name) && definitions[name] != keys) name += "_";
+    definitions[name] = std::move(keys);
+    one_of.push_back({{"$ref", "#/definitions/" + name}});
+  }
+  if (!branch_.opened_by.empty()) {
+    const Json other = {{"type", "string"}, {"not", {{"enum", branch_.words}}}};
+    one_of.push_back({{"type", "object"},
+                      {"properties", {{branch_.key, other}}},
+                      {"required", Json::array({branch_.key})}});
+  }
+  return {{"oneOf", one_of}};
+}
+
+Json KeyTree::value(Json& definitions) const {
+  Json any = Json::array();
+  if (!forms_.empty()) any.push_back(forms());
+  if (is_table() || !branch_.opened_by.empty())
+    any.push_back(branch_.key.empty() ? object({this}, "", definitions) : branches(definitions));
+  for (const auto& [name, node] : children_)
+    if (name == "[]") any.push_back({{"type", "array"}, {"items", node->value(definitions)}});
+  return any.size() == 1 ? any.front() : Json{{"anyOf", any}};
+}
+
+Json KeyTree::schema(Json& definitions) const { return object({this}, "", definitions); }
+
+}  // namespace swingbank

@@ -1,0 +1,58 @@
+#pragma once
+// Tree of the keys of all passes of a reader, written as JSON Schema.
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/detail/key_trace.hpp"
+
+namespace swingbank {
+
+/// Table or key, with what the passes have in common.
+class KeyTree {
+ public:
+  using Json = nlohmann::ordered_json;
+  KeyTree() = default;
+  explicit KeyTree(const std::vector<const KeyTrace*>& passes) {
+    for (const KeyTrace* pass : passes) add(*pass);
+  }
+  /// Adds the keys of one pass.
+  void add(const KeyTrace& pass);
+  /// Adds a condition to the table at `path`.
+  void constrain(const KeyPath& path, Json condition) {
+    at(path).conditions_.push_back(std::move(condition));
+  }
+  /// Returns the paths of all tables and keys, and of those that every pass with their table requires.
+  [[nodiscard]] std::set<KeyPath> asked() const { return paths(false); }
+  [[nodiscard]] std::set<KeyPath> required() const { return paths(true); }
+  /// Returns the schema of the table; schemas of branches are added to `definitions`.
+  [[nodiscard]] Json schema(Json& definitions) const;
+
+ private:
+  KeyTree& at(const KeyPath& path);
+  KeyTree& child(const std::string& name);
+  void touch(int pass);
+  void collect(const KeyPath& here, bool required, std::set<KeyPath>& into) const;
+  [[nodiscard]] std::set<KeyPath> paths(bool required) const;
+  [[nodiscard]] bool always(const KeyTree& table) const { return needed_ > 0 && needed_ == table.touched_; }
+  [[nodiscard]] bool is_table() const;
+  [[nodiscard]] Json value(Json& definitions) const;
+  [[nodiscard]] Json forms() const;
+  [[nodiscard]] Json object(const std::vector<const KeyTree*>& parts, const std::string& word,
+                            Json& definitions) const;
+  [[nodiscard]] Json branches(Json& definitions) const;
+
+  std::vector<std::pair<std::string, std::unique_ptr<KeyTree>>> children_;  ///< in the order of reading
+  std::vector<KeyForm> forms_;
+  std::vector<Json> conditions_;
+  KeyTrace::Table branch_;
+  bool asked_for_ = false;              ///< some pass read it only because it is present
+  int pass_ = 0;                        ///< number of passes, of the root
+  int touched_ = 0, last_touched_ = 0;  ///< passes that read a key of this table, and the last of them
+  int needed_ = 0, last_needed_ = 0;    ///< passes that require it, and the last of them
+};
+
+}  // namespace swingbank

@@ -1,0 +1,12 @@
+#pragma once
+// Text of a JSON Schema: short values on one line, others with a line for each part.
+#include <string>
+
+#include "base/json.hpp"
+
+namespace swingbank {
+
+/// Returns JSON as text that ends with a line break, for files that are read by people too.
+std::string schema_text(const nlohmann::ordered_json& schema);
+
+}  // namespace swingbank
