@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "base/config.hpp"
+#include "base/describe.hpp"
 #include "sim/grid/attach.hpp"
 #include "sim/user_models/user_model.hpp"
 
@@ -18,17 +19,23 @@ namespace fs = std::filesystem;
 namespace {
 
 std::vector<int> numbers(const std::vector<std::int64_t>& v) { return {v.begin(), v.end()}; }
-const Range kBusNumber{1, 999997, ""};
-const Range kCount{1, 1e10, ""};  // 1e10 rows are 400 TB
-const Range kShardDraws{1, 1e6, ""}, kSeed{0, 9e18, ""}, kRate{1.0, 1e5, "1/s"};
-const Range kShardSize{0.001, 1e5, "MB"};
+Range bus_number(std::string meaning) { return {1, 999997, "", std::move(meaning)}; }
+Range count(std::string meaning) { return {1, 1e10, "", std::move(meaning)}; }  // 1e10 rows are 400 TB
+const Range kShardDraws{1, 1e6, "", "events in a file, in place of its size"},
+    kSeed{0, 9e18, "", "seed of all random numbers"}, kRate{1.0, 1e5, "1/s", "sampling rate"};
+const Range kShardSize{0.001, 1e5, "MB", "size of a file"};
 constexpr double kUsualShard = 64.0;  ///< default size of a shard [MB], about 1 s of core time
 
-std::string parameter_list(const sim::Effect& e) {
-  std::string all;
+/// Returns the names of the parameters that can be sampled.
+std::vector<std::string> parameter_names(const sim::Effect& e) {
+  std::vector<std::string> names;
   for (const auto& p : e.parameters)
-    if (!p.is_code()) all += (all.empty() ? "" : ", ") + std::string(p.name);
-  return all.empty() ? "none" : all;
+    if (!p.is_code()) names.emplace_back(p.name);
+  return names;
+}
+std::string parameter_list(const sim::Effect& e) {
+  const auto names = parameter_names(e);
+  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// Reads a table of boxes: "name = [low, high]" is sampled, "name = value" is fixed. The parameters' records
@@ -36,7 +43,7 @@ std::string parameter_list(const sim::Effect& e) {
 void read_box(Config& c, const std::string& table, const sim::Effect& effect, const sim::Effect* owner,
               std::vector<Box>& box) {
   std::vector<Box> found;
-  for (const auto& name : c.keys(table)) {
+  for (const auto& name : c.keys(table, parameter_names(effect))) {
     const std::string key = table + "." + name;
     const int index = effect.parameter_index(name);
     if (index < 0 || effect.parameters[static_cast<std::size_t>(index)].is_code()) {
@@ -48,7 +55,7 @@ void read_box(Config& c, const std::string& table, const sim::Effect& effect, co
       continue;
     }
     const auto& record = effect.parameters[static_cast<std::size_t>(index)];
-    const Range possible{record.low, record.high, std::string(record.unit)};
+    const Range possible{record.low, record.high, std::string(record.unit), std::string(record.meaning)};
     if (c.is_array(key)) {
       const auto [low, high] = c.interval(key, possible);
       found.push_back({index, low, high, owner});
@@ -64,17 +71,23 @@ void read_box(Config& c, const std::string& table, const sim::Effect& effect, co
 /// Returns whether an effect is a machine with a rotor. Records contain rotor angles, which converters lack.
 bool is_machine(const sim::Effect& effect) { return effect.slot == sim::Slot::machine && !effect.converter; }
 
-std::string machines(const sim::library::EffectLibrary& library) {
-  std::string names;
+/// Returns whether parameters of an effect beside the machine can be sampled.
+bool is_varied(const sim::Effect& effect) {
+  return effect.slot == sim::Slot::transformer || sim::is_control(effect.slot);
+}
+
+std::vector<std::string> names_of(const sim::library::EffectLibrary& library,
+                                  bool (*chosen)(const sim::Effect&)) {
+  std::vector<std::string> names;
   for (const sim::Effect* e : library.all())
-    if (is_machine(*e)) names += (names.empty() ? "" : ", ") + std::string(e->name);
+    if (chosen(*e)) names.emplace_back(e->name);
   return names;
 }
 
 /// Reads [vary.effects.NAME]: parameters of effects other than the machine.
 void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, std::vector<Box>& box) {
   std::vector<std::pair<const sim::Effect*, std::string>> tables;
-  for (const auto& name : c.keys("vary.effects")) {
+  for (const auto& name : c.keys("vary.effects", names_of(library, is_varied), "laws")) {
     const std::string table = "vary.effects." + name;
     const sim::Effect* effect = library.find(name);
     const auto known = [&](const auto& t) { return t.first == effect; };
@@ -83,7 +96,7 @@ void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, st
       why = "there is no such effect; user-defined models are listed under `laws`";
     else if (effect->slot == sim::Slot::machine)
       why = "it is a machine, whose parameters are given in [vary.box]";
-    else if (effect->slot != sim::Slot::transformer && !sim::is_control(effect->slot))
+    else if (!is_varied(*effect))
       why = "it is a " + std::string(sim::slot_name(effect->slot)) + ", no part of a plant's equations";
     else if (std::ranges::any_of(tables, known))
       why = "another table of this config names the same effect";
@@ -101,7 +114,8 @@ void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, st
 
 /// Reads `user_models` and `attach`. User-defined models come first, because they may be attached and varied.
 void read_effects(Config& c, DatasetConfig& d) {
-  for (const auto& text : c.optional<std::vector<std::string>>("laws", {})) {
+  for (const auto& text : c.optional<std::vector<std::string>>(
+           "laws", {}, {.meaning = "files of user-defined models, beside this file"})) {
     d.user_models.push_back((c.name().parent_path() / text).lexically_normal());
     try {
       sim::user_models::load_user_model(d.user_models.back(), d.library);
@@ -110,7 +124,10 @@ void read_effects(Config& c, DatasetConfig& d) {
     }
   }
   Problems problems;
-  for (const auto& text : c.optional<std::vector<std::string>>("attach", {})) {
+  for (const auto& text : c.optional<std::vector<std::string>>(
+           "attach", {},
+           {.meaning =
+                "PLANT:EFFECT:PARAM=VALUE,...: effects that the .dyr lacks; PLANT all: every plant"})) {
     d.attachments.push_back(
         sim::plant::read_attachment(text, d.library, "attach = '" + text + "'", problems));
     const sim::Effect* effect = d.attachments.back().block.effect;
@@ -133,25 +150,41 @@ std::vector<T> repeated(std::vector<T> list) {
 
 CaseConfig read_mend(Config& c) {
   CaseConfig mend;
-  mend.raw_version = static_cast<int>(c.optional<std::int64_t>("raw_version", 0, {0.0, 35.0, ""}));
-  mend.net_generators = c.optional<bool>("net_generators", false);
-  mend.widen_limits = c.optional<bool>("widen_limits", false);
-  mend.start_from_file = c.choice("start", {"solved", "file"}, "solved") == "file";
-  mend.reactive_limits = c.choice("q_limits", {"enforce", "ignore"}, "enforce") == "enforce";
-  mend.drop_refused = c.optional<bool>("drop_refused", false);
-  mend.repeated = c.choice("repeated", {"refuse", "keep", "voltages"}, "refuse");
-  mend.complete_records = c.choice("complete_records", {"no", "zero", "standard"}, "no");
-  mend.devices = c.choice("devices", {"checked", "file", "none"}, "checked");
+  mend.raw_version = static_cast<int>(c.optional<std::int64_t>(
+      "raw_version", 0, {0.0, 35.0, "", "version of the .raw; 0: as its head says"}));
+  mend.net_generators = c.optional<bool>(
+      "net_generators", false, {.meaning = "generators without a machine model become negative loads"});
+  mend.widen_limits = c.optional<bool>("widen_limits", false,
+                                       {.meaning = "limits that the operating point violates are widened"});
+  mend.start_from_file =
+      c.choice("start", {"solved", "file"}, "solved",
+               {.meaning = "operating point: power flow, or voltages of the file"}) == "file";
+  mend.reactive_limits = c.choice("q_limits", {"enforce", "ignore"}, "enforce",
+                                  {.meaning = "limits of reactive power in the power flow"}) == "enforce";
+  mend.drop_refused =
+      c.optional<bool>("drop_refused", false, {.meaning = "leave out models that cannot be initialised"});
+  mend.repeated = c.choice("repeated", {"refuse", "keep", "voltages"}, "refuse",
+                           {.meaning = "repeated records of the .raw"});
+  mend.complete_records = c.choice("complete_records", {"no", "zero", "standard"}, "no",
+                                   {.meaning = "completion of records that are shorter than their model"});
+  mend.devices = c.choice("devices", {"checked", "file", "none"}, "checked",
+                          {.meaning = "voltage regulation by devices of the network"});
   return mend;
 }
 
 void read_vary(Config& c, DatasetConfig& d) {
-  d.vary = c.choice("vary.who", {"one", "all"}) == "all" ? Vary::all : Vary::one;
-  d.generators = numbers(c.require<std::vector<std::int64_t>>("vary.generators", kBusNumber));
+  d.vary = c.choice("vary.who", {"one", "all"},
+                    Range{.meaning =
+                              "one: each draw varies one generator, in turn; all: every listed one"}) == "all"
+               ? Vary::all
+               : Vary::one;
+  d.generators = numbers(c.require<std::vector<std::int64_t>>(
+      "vary.generators", bus_number("bus numbers of the varied generators")));
   if (c.has("vary.generators") && d.generators.empty())
     c.problem("vary.generators", "no generator", "a dataset varies at least one",
               "list bus numbers of generators");
-  d.ids = c.optional<std::vector<std::string>>("vary.ids", {});
+  d.ids = c.optional<std::vector<std::string>>("vary.ids", {},
+                                               {.meaning = "ids of the varied units, in the same order"});
   if (!d.ids.empty() && d.ids.size() != d.generators.size())
     c.problem("vary.ids", fmt::format("{} ids for {} generators", d.ids.size(), d.generators.size()),
               "each names the unit at the bus of the same place in vary.generators",
@@ -159,18 +192,18 @@ void read_vary(Config& c, DatasetConfig& d) {
   for (const int number : repeated(d.generators))
     c.problem("vary.generators", fmt::format("generator {} twice", number), "each varies once",
               "name it once");
-  d.model = c.require<std::string>("vary.model");
+  std::vector<Box> others;
+  read_effect_boxes(c, d.library, others);
+  d.model = c.branch("vary.model", {.words = names_of(d.library, is_machine), .any_case = true},
+                     {.meaning = "machine model of the varied generators"});
   const sim::Effect* effect = d.library.find(d.model);
   if (effect == nullptr || !is_machine(*effect)) {
-    if (!d.model.empty())
-      c.problem("vary.model", "model " + d.model, "it is no machine model of this program",
-                "use one of: " + machines(d.library));
     c.ignore("vary.box");  // cannot be checked without the model
     return;
   }
   d.model = effect->name;
   read_box(c, "vary.box", *effect, nullptr, d.box);
-  read_effect_boxes(c, d.library, d.box);
+  d.box.insert(d.box.end(), others.begin(), others.end());
   if (std::ranges::none_of(d.box, &Box::sampled))
     c.problem("vary.box", "no parameter varies", "no entry of [vary.box] or [vary.effects.…] is an interval",
               "write at least one as name = [low, high]");
@@ -178,25 +211,39 @@ void read_vary(Config& c, DatasetConfig& d) {
 
 void read_fault(Config& c, FaultConfig& f) {
   if (c.is_text("fault.buses"))
-    c.choice("fault.buses", {"any"});
+    c.choice("fault.buses", {"any"}, Range{.meaning = "any bus"});
   else
-    f.buses = numbers(c.require<std::vector<std::int64_t>>("fault.buses", kBusNumber));
-  f.except = numbers(c.optional<std::vector<std::int64_t>>("fault.except", {}, kBusNumber));
-  f.start = c.optional<double>("fault.start", f.start, {0.0, 1e4, "s"});
-  std::tie(f.shortest, f.longest) = c.interval("fault.duration", {1e-4, 100.0, "s"});
-  f.r = c.optional<double>("fault.r", 0.0, {0.0, 1e3, "pu"});
-  f.x = c.optional<double>("fault.x", 0.0, {0.0, 1e3, "pu"});
-  f.per_point = static_cast<std::uint64_t>(c.optional<std::int64_t>("fault.per_point", 1, kCount));
+    f.buses = numbers(c.require<std::vector<std::int64_t>>("fault.buses", bus_number("bus numbers")));
+  f.except = numbers(
+      c.optional<std::vector<std::int64_t>>("fault.except", {}, bus_number("bus numbers without a fault")));
+  f.start = c.optional<double>("fault.start", f.start, {0.0, 1e4, "s", "start of the fault"});
+  std::tie(f.shortest, f.longest) =
+      c.interval("fault.duration", {1e-4, 100.0, "s", "[shortest, longest] duration"});
+  f.r = c.optional<double>("fault.r", 0.0, {0.0, 1e3, "pu", "fault resistance, on the network's base"});
+  f.x = c.optional<double>("fault.x", 0.0, {0.0, 1e3, "pu", "fault reactance, on the network's base"});
+  f.per_point = static_cast<std::uint64_t>(
+      c.optional<std::int64_t>("fault.per_point", 1, count("faults for each point of the databank")));
+}
+
+/// Reads a time constant of the frequency filter, which only the channel frequency has.
+void read_time_constant(Config& c, const std::string& key, bool frequency, double& value) {
+  if (!frequency && !c.has(key)) return;
+  value = c.require<double>(key, {1e-3, 100.0, "s", "time constant of the filter of the channel frequency"});
+  if (!frequency)
+    c.problem(key, key, "no channel frequency is recorded",
+              "leave it out, or add frequency to record.channels");
 }
 
 void read_record(Config& c, RecordConfig& r) {
-  r.t_end = c.require<double>("record.t_end", {0.01, 1e4, "s"});
+  r.t_end = c.require<double>("record.t_end", {0.01, 1e4, "s", "duration of a record"});
   r.rate = c.require<double>("record.rate", kRate);
-  r.int16 = c.choice("record.storage", {"float32", "int16"}, "float32") == "int16";
-  r.channels = c.require<std::vector<std::string>>("record.channels");
+  r.int16 = c.choice("record.storage", {"float32", "int16"}, "float32", {.meaning = "storage of a value"}) ==
+            "int16";
   std::vector<std::string> known;
   for (const auto& k : sim::kChannels) known.emplace_back(k.name);
   known.emplace_back("frequency");
+  r.channels = c.require<std::vector<std::string>>(
+      "record.channels", {.meaning = fmt::format("recorded channels, some of: {}", fmt::join(known, ", "))});
   for (const auto& name : r.channels)
     if (std::ranges::find(known, name) == known.end())
       c.problem("record.channels", "channel '" + name + "'", "there is no such channel",
@@ -206,21 +253,29 @@ void read_record(Config& c, RecordConfig& r) {
               fmt::format("use some of: {}", fmt::join(known, ", ")));
   for (const auto& name : repeated(r.channels))
     c.problem("record.channels", "channel '" + name + "' twice", "a record holds each once", "name it once");
-  if (std::ranges::find(r.channels, "frequency") == r.channels.end()) return;
-  r.frequency.washout = c.require<double>("record.frequency_washout", {1e-3, 100.0, "s"});
-  r.frequency.filter = c.require<double>("record.frequency_filter", {1e-3, 100.0, "s"});
-  if (r.frequency.washout == r.frequency.filter && r.frequency.filter > 0)
+  const bool frequency = std::ranges::find(r.channels, "frequency") != r.channels.end();
+  read_time_constant(c, "record.frequency_washout", frequency, r.frequency.washout);
+  read_time_constant(c, "record.frequency_filter", frequency, r.frequency.filter);
+  if (frequency && r.frequency.washout == r.frequency.filter && r.frequency.filter > 0)
     c.problem("record.frequency_filter", "frequency_filter equal to frequency_washout",
               "the filter's two time constants must differ", "change one of them");
 }
 
 void read_databank(Config& c, DatabankConfig& b) {
-  b.policy = c.choice("databank.policy", {"physical", "literal"}, "physical") == "literal" ? Policy::literal
-                                                                                           : Policy::physical;
-  b.distance = c.require<double>("databank.distance", {0.0, 1e6, ""});
-  b.scaled = c.choice("databank.scale", {"raw", "scaled"}, "raw") == "scaled";
+  b.policy =
+      c.choice("databank.policy", {"physical", "literal"}, "physical",
+               {.meaning = "physical refuses Xd <= Xdp and similar orders, literal singular values only"}) ==
+              "literal"
+          ? Policy::literal
+          : Policy::physical;
+  b.distance = c.require<double>("databank.distance",
+                                 {0.0, 1e6, "", "smallest Euclidean distance of two points; 0: plain draws"});
+  b.scaled =
+      c.choice("databank.scale", {"raw", "scaled"}, "raw",
+               {.meaning = "distance in the parameters' own units, or in widths of the box"}) == "scaled";
   b.candidates_per_point =
-      c.optional<double>("databank.candidates_per_point", b.candidates_per_point, {1.0, 1e9, ""});
+      c.optional<double>("databank.candidates_per_point", b.candidates_per_point,
+                         {1.0, 1e9, "", "candidates per point before the draw is aborted"});
 }
 
 /// Reads [operating_point], if present.
@@ -230,16 +285,25 @@ void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point)
   const auto interval = [&](const char* key, double& low, double& high, const Range& range) {
     if (c.has(key)) std::tie(low, high) = c.interval(key, range);
   };
-  p.per_block = static_cast<std::uint64_t>(c.optional<std::int64_t>("operating_point.per_block", 2, kCount));
-  interval("operating_point.loads", p.loads_low, p.loads_high, {0.01, 10.0, ""});
-  p.load_spread = c.optional<double>("operating_point.load_spread", 0.0, {0.0, 0.99, ""});
-  interval("operating_point.dispatch", p.dispatch_low, p.dispatch_high, {0.01, 10.0, ""});
-  p.voltage = c.optional<double>("operating_point.voltage", 0.0, {0.0, 0.2, "pu"});
-  interval("operating_point.loading", p.loading_low, p.loading_high, {0.001, 2.0, ""});
-  p.oversized_share = c.optional<double>("operating_point.oversized_share", 0.0, {0.0, 1.0, ""});
-  interval("operating_point.oversized", p.oversized_low, p.oversized_high, {1.0, 1000.0, ""});
+  p.per_block = static_cast<std::uint64_t>(c.optional<std::int64_t>(
+      "operating_point.per_block", 2, count("draws that share one operating point")));
+  interval("operating_point.loads", p.loads_low, p.loads_high,
+           {0.01, 10.0, "", "[low, high] factor of all loads and all dispatch"});
+  p.load_spread = c.optional<double>("operating_point.load_spread", 0.0,
+                                     {0.0, 0.99, "", "independent factor of each load: 1 - s to 1 + s"});
+  interval("operating_point.dispatch", p.dispatch_low, p.dispatch_high,
+           {0.01, 10.0, "", "[low, high] factor of each generator's P"});
+  p.voltage = c.optional<double>("operating_point.voltage", 0.0,
+                                 {0.0, 0.2, "pu", "deviation of each controlled voltage, either way"});
+  interval("operating_point.loading", p.loading_low, p.loading_high,
+           {0.001, 2.0, "", "[low, high] apparent power of a machine over its base"});
+  p.oversized_share = c.optional<double>("operating_point.oversized_share", 0.0,
+                                         {0.0, 1.0, "", "share of oversized machines"});
+  interval("operating_point.oversized", p.oversized_low, p.oversized_high,
+           {1.0, 1000.0, "", "[low, high] factor of their base"});
   double low = 0.0, high = 0.0;
-  interval("operating_point.lines_out", low, high, {0.0, 100.0, ""});
+  interval("operating_point.lines_out", low, high,
+           {0.0, 100.0, "", "[low, high] number of lines out of service"});
   p.lines_out_low = static_cast<int>(low);
   p.lines_out_high = static_cast<int>(high);
   if (low != p.lines_out_low || high != p.lines_out_high)
@@ -252,119 +316,6 @@ void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point)
 
 }  // namespace
 
-std::size_t RecordConfig::samples() const {
-  return static_cast<std::size_t>(std::floor(t_end * rate + 1e-9));
-}
-
-const sim::Effect& DatasetConfig::effect() const { return *library.find(model); }
-
-const sim::Effect& DatasetConfig::effect_of(const Box& b) const {
-  return b.effect == nullptr ? effect() : *b.effect;
-}
-
-const sim::Parameter& DatasetConfig::record_of(const Box& b) const {
-  return effect_of(b).parameters[static_cast<std::size_t>(b.index)];
-}
-
-std::string DatasetConfig::name_of(const Box& b) const {
-  const std::string effect(b.effect == nullptr ? "" : b.effect->name);
-  return sim::plant::ParameterName{effect, std::string(record_of(b).name)}.text();
-}
-
-std::vector<const sim::Effect*> DatasetConfig::other_effects() const {
-  std::vector<const sim::Effect*> all;
-  for (const auto& b : box)
-    if (b.effect != nullptr && std::ranges::find(all, b.effect) == all.end()) all.push_back(b.effect);
-  return all;
-}
-
-std::uint64_t DatasetConfig::bytes_per_draw() const {
-  const std::size_t values = record.samples() * record.channels.size();
-  const auto has = [&](const char* name) {
-    return std::ranges::find(record.channels, name) != record.channels.end();
-  };
-  std::size_t row = record.int16 ? 2 * values + 8 * record.channels.size() : 4 * values;
-  if (has("theta") || has("frequency")) row += record.samples();  // angle_valid
-  row += 8 * (box.size() + 9);                                    // parameters, ids, fault, spread, base
-  return row * (vary == Vary::all ? generators.size() : 1) + 17;
-}
-
-std::uint64_t DatasetConfig::points() const {
-  const std::uint64_t groups = (draws + fault.per_point - 1) / fault.per_point;
-  return vary == Vary::all ? groups * generators.size() : groups;
-}
-
-namespace {
-/// Returns an attachment as "30:SEXS:TAoverTB=0.1,TB=10,…" with every parameter, so that a changed default
-/// value changes the hash.
-std::string written(const sim::plant::Attachment& a) {
-  std::string text = a.plant + ":" + std::string(a.block.effect->name);
-  for (std::size_t i = 0; i < a.block.p.size(); ++i)
-    text += fmt::format("{}{}={}", i == 0 ? ":" : ",", a.block.effect->parameters[i].name, a.block.p[i]);
-  return text;
-}
-}  // namespace
-
-std::string DatasetConfig::canonical() const {
-  std::string text;
-  const auto line = [&](std::string_view key, const auto& value) {
-    text += fmt::format("{} = {}\n", key, value);
-  };
-  // Optional keys at their defaults give no line, so that older configs keep their hash.
-  if (!models.ignore.empty()) line("ignore_models", models.ignore);
-  for (const auto& [from, to] : models.map) line("map_models", from + "=" + to);
-  if (frequency_hz) line("frequency_hz", *frequency_hz);
-  if (mend.raw_version != 0) line("raw_version", mend.raw_version);
-  if (mend.net_generators) line("net_generators", true);
-  if (mend.widen_limits) line("widen_limits", true);
-  if (mend.start_from_file) line("start", "file");
-  if (!mend.reactive_limits) line("q_limits", "ignore");
-  if (mend.drop_refused) line("drop_refused", true);
-  if (mend.repeated != "refuse") line("repeated", mend.repeated);
-  if (mend.complete_records != "no") line("complete_records", mend.complete_records);
-  if (mend.devices != "checked") line("devices", mend.devices);
-  for (const auto& a : attachments) line("attach", written(a));
-  line("convention", psse ? "psse" : "andes");
-  line("draws", draws);
-  line("draws_per_shard", draws_per_shard);
-  line("seed", seed);
-  line("vary.who", vary == Vary::all ? "all" : "one");
-  line("vary.generators", generators);
-  if (!ids.empty()) line("vary.ids", ids);
-  line("vary.model", model);
-  for (const auto& b : box)
-    line((b.effect == nullptr ? "vary.box." : "vary.effects.") + name_of(b),
-         std::vector<double>{b.low, b.high});
-  line("databank.policy", databank.policy == Policy::literal ? "literal" : "physical");
-  line("databank.distance", databank.distance);
-  line("databank.scale", databank.scaled ? "scaled" : "raw");
-  line("fault.buses", fault.buses);
-  line("fault.except", fault.except);
-  line("fault.start", fault.start);
-  line("fault.duration", std::vector<double>{fault.shortest, fault.longest});
-  line("fault.impedance", std::vector<double>{fault.r, fault.x});
-  line("fault.per_point", fault.per_point);
-  line("record.t_end", record.t_end);
-  line("record.rate", record.rate);
-  if (record.int16) line("record.storage", "int16");
-  line("record.channels", fmt::format("{}", fmt::join(record.channels, ", ")));
-  line("record.frequency", std::vector<double>{record.frequency.washout, record.frequency.filter});
-  line("kernel.tolerance", tolerance);
-  if (operating_point) {
-    const OperatingPointConfig& p = *operating_point;
-    line("operating_point.per_block", p.per_block);
-    line("operating_point.loads", std::vector<double>{p.loads_low, p.loads_high});
-    line("operating_point.load_spread", p.load_spread);
-    line("operating_point.dispatch", std::vector<double>{p.dispatch_low, p.dispatch_high});
-    line("operating_point.voltage", p.voltage);
-    line("operating_point.loading", std::vector<double>{p.loading_low, p.loading_high});
-    line("operating_point.oversized",
-         std::vector<double>{p.oversized_share, p.oversized_low, p.oversized_high});
-    line("operating_point.lines_out", std::vector<int>{p.lines_out_low, p.lines_out_high});
-  }
-  return text;
-}
-
 namespace {
 /// Throws InputError if an override is outside the range of its key in the config.
 void require_in_range(const Overrides& o) {
@@ -374,8 +325,8 @@ void require_in_range(const Overrides& o) {
       problems.add(std::to_string(*value), option, fmt::format("it must be at most {:.0f}", high),
                    "give a smaller number");
   };
-  check(o.draws, "--draws", kCount.high);
-  check(o.faults_per_point, "--faults-per-point", kCount.high);
+  check(o.draws, "--draws", count("").high);
+  check(o.faults_per_point, "--faults-per-point", count("").high);
   check(o.draws_per_shard, "--draws-per-shard", kShardDraws.high);
   check(o.seed, "--seed", kSeed.high);
   const auto within = [&](const std::optional<double>& value, const char* option, const Range& range) {
@@ -399,8 +350,8 @@ namespace {
 std::optional<double> read_shard_size(Config& c, DatasetConfig& d) {
   if (c.has("draws_per_shard")) {
     d.draws_per_shard = static_cast<std::uint64_t>(c.require<std::int64_t>("draws_per_shard", kShardDraws));
-    if (!c.has("shard_megabytes")) return std::nullopt;
-    c.problem("shard_megabytes", "two sizes of a shard", "draws_per_shard gives another", "leave one out");
+    c.exclude("shard_megabytes", "two sizes of a shard", "draws_per_shard gives another", "leave one out");
+    return std::nullopt;
   }
   return c.optional<double>("shard_megabytes", kUsualShard, kShardSize);
 }
@@ -433,18 +384,22 @@ void override_with(DatasetConfig& d, const Overrides& o, std::optional<double> m
 
 }  // namespace
 
-DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrides) {
-  Config c(file);
+namespace {
+/// Reads all values; `megabytes`: size of a shard.
+DatasetConfig read_values(Config& c, std::optional<double>& megabytes) {
   DatasetConfig d;
-  d.file = file;
-  d.raw = c.file("raw");
-  d.dyr = c.file("dyr");
+  d.file = c.name();
+  d.raw = c.file("raw", {.meaning = "network (.raw or .m), beside this file"});
+  d.dyr = c.file("dyr", {.meaning = "dynamic models, beside this file"});
   d.models = sim::formats::read_dyr_options(c, "");
-  if (c.has("frequency_hz")) d.frequency_hz = c.require<double>("frequency_hz", {1.0, 1000.0, "Hz"});
+  if (c.has("frequency_hz"))
+    d.frequency_hz =
+        c.require<double>("frequency_hz", {1.0, 1000.0, "Hz", "nominal frequency, for a network in .m"});
   d.mend = read_mend(c);
-  d.psse = c.choice("convention", {"psse", "andes"}) != "andes";
-  d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", kCount));
-  const auto megabytes = read_shard_size(c, d);
+  d.psse = c.choice("convention", {"psse", "andes"},
+                    Range{.meaning = "psse: governors set power; andes: torque"}) != "andes";
+  d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", count("events to simulate")));
+  megabytes = read_shard_size(c, d);
   d.seed = static_cast<std::uint64_t>(c.optional<std::int64_t>("seed", 1, kSeed));
   read_effects(c, d);
   read_vary(c, d);
@@ -452,13 +407,30 @@ DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrid
   read_fault(c, d.fault);
   read_record(c, d.record);
   read_operating_point(c, d.operating_point);
-  d.tolerance = c.optional<double>("kernel.tolerance", 1e-6, {1e-12, 1e-2, ""});
-  d.lanes = static_cast<int>(c.optional<std::int64_t>("kernel.lanes", 0, {0, 16, ""}));
+  d.tolerance = c.optional<double>("kernel.tolerance", 1e-6,
+                                   {1e-12, 1e-2, "", "tolerance of the integrator, per step"});
+  d.lanes = static_cast<int>(c.optional<std::int64_t>(
+      "kernel.lanes", 0, {0, 16, "", "SIMD width; 0: the widest in double of the build"}));
   if (d.fault.start + d.fault.longest >= d.record.t_end && d.record.t_end > 0)
     c.problem("fault.start", fmt::format("a fault until {} s", d.fault.start + d.fault.longest),
               fmt::format("the record ends at {} s", d.record.t_end),
               "let the fault end before the record does");
   c.raise();
+  return d;
+}
+}  // namespace
+
+std::string dataset_schema() {
+  return describe_keys("Dataset of Swingbank", [](Config& c) {
+    std::optional<double> megabytes;
+    read_values(c, megabytes);
+  });
+}
+
+DatasetConfig read_dataset_config(const fs::path& file, const Overrides& overrides) {
+  Config c(file);
+  std::optional<double> megabytes;
+  DatasetConfig d = read_values(c, megabytes);
   require_in_range(overrides);
   d.overrides = overrides;
   override_with(d, overrides, megabytes);

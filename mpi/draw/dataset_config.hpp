@@ -131,6 +131,9 @@ struct DatasetConfig {
 /// Reads a config. Throws InputError with every problem of the file.
 DatasetConfig read_dataset_config(const std::filesystem::path& file, const Overrides& overrides = {});
 
+/// Returns the JSON Schema of configs.
+std::string dataset_schema();
+
 /// Config with its grid; bus numbers are resolved to indices.
 struct Study {
   DatasetConfig config;

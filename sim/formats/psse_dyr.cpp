@@ -228,10 +228,12 @@ void add_model_map(DyrOptions& options, const std::string& text, const std::stri
 
 DyrOptions read_dyr_options(Config& config, const std::string& prefix) {
   DyrOptions options;
-  options.ignore = config.optional<std::vector<std::string>>(prefix + "ignore_models", {});
+  options.ignore = config.optional<std::vector<std::string>>(prefix + "ignore_models", {},
+                                                             {.meaning = "models of the .dyr to leave out"});
   const std::string key = prefix + "map_models";
   Problems problems;
-  for (const auto& text : config.optional<std::vector<std::string>>(key, {}))
+  for (const auto& text : config.optional<std::vector<std::string>>(
+           key, {}, {.meaning = "FROM=TO: models of the .dyr to read as others"}))
     add_model_map(options, text, config.where(key), problems);
   for (const Problem& p : problems.list()) config.problem(key, p.what, p.why, p.remedy);
   return options;

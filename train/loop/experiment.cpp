@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/config.hpp"
+#include "base/describe.hpp"
 #include "train/direct/direct.hpp"
 #include "train/networks/network.hpp"
 
@@ -13,8 +14,9 @@ namespace swingbank::train::loop {
 namespace {
 
 const std::vector<std::string> kSchedules = {"constant", "cosine"};
-const Range kNoiseLevels = {0.0, 0.1};  // above it a phasor is no measurement
-constexpr double kLeastShare = 1e-3;    // of the training rows
+// above it a phasor is no measurement
+const Range kNoiseLevels = {0.0, 0.1, "", "levels of measurement noise, one run each"};
+constexpr double kLeastShare = 1e-3;  // of the training rows
 
 std::vector<std::string> network_names() {
   std::vector<std::string> names;
@@ -23,61 +25,83 @@ std::vector<std::string> network_names() {
   return names;
 }
 
-/// Reads the keys of one table. Values of `common`, if given, replace missing keys.
+/// Treatment of a missing key: a problem, its default, or the value of the preset that a network's table
+/// overrides.
+enum class Missing { refused, standard, inherited };
+
+/// Reader of the keys of one table.
 class Keys {
  public:
-  Keys(Config& c, std::string at, bool complete) : c_(c), at_(std::move(at)), complete_(complete) {}
-  void whole(const char* key, double low, std::size_t& value) {
-    const Range range{low, 1e12};
-    value = static_cast<std::size_t>(
-        complete_ ? c_.require<std::int64_t>(name(key), range)
-                  : c_.optional<std::int64_t>(name(key), static_cast<std::int64_t>(value), range));
+  Keys(Config& c, std::string at, Missing missing) : c_(c), at_(std::move(at)), missing_(missing) {}
+  void whole(const char* key, double low, std::size_t& value, const char* meaning) {
+    auto read = static_cast<std::int64_t>(value);
+    one(key, {low, 1e12, "", meaning}, read);
+    value = static_cast<std::size_t>(read);
   }
-  void number(const char* key, const Range& range, double& value) {
-    value = complete_ ? c_.require<double>(name(key), range) : c_.optional<double>(name(key), value, range);
+  void number(const char* key, const Range& range, double& value) { one(key, range, value); }
+  void choice(const char* key, const std::vector<std::string>& choices, std::string& value,
+              const char* meaning) {
+    if (missing_ != Missing::inherited || c_.has(name(key)))
+      value = c_.choice(name(key), choices, Range{.meaning = meaning});
   }
-  void choice(const char* key, const std::vector<std::string>& choices, std::string& value) {
-    value = complete_ ? c_.choice(name(key), choices) : c_.choice(name(key), choices, value);
+  void flag(const char* key, bool& value, const char* meaning) { one(key, {.meaning = meaning}, value); }
+  void names(const char* key, std::vector<std::string>& value, const char* meaning) {
+    one(key, {.meaning = meaning}, value);
   }
-  void flag(const char* key, bool& value) { value = c_.optional<bool>(name(key), value); }
-  void names(const char* key, std::vector<std::string>& value) {
-    if (complete_ || c_.has(name(key))) value = c_.require<std::vector<std::string>>(name(key));
-  }
+  void numbers(const char* key, const Range& range, std::vector<double>& value) { one(key, range, value); }
 
  private:
   [[nodiscard]] std::string name(const char* key) const { return at_ + "." + key; }
+  template <class T>
+  void one(const char* key, const Range& range, T& value) {
+    if (missing_ == Missing::standard)
+      value = c_.optional<T>(name(key), value, range);
+    else if (missing_ == Missing::refused || c_.has(name(key)))
+      value = c_.require<T>(name(key), range);
+  }
   Config& c_;
   std::string at_;
-  bool complete_;
+  Missing missing_;
 };
 
+/// Treatment of missing keys that have a default, in a preset (`complete`) or in a network's table.
+Missing default_of(bool complete) { return complete ? Missing::standard : Missing::inherited; }
+Missing required_of(bool complete) { return complete ? Missing::refused : Missing::inherited; }
+
 void read_training(Config& c, const std::string& at, bool complete, TrainingRecipe& t) {
-  Keys k(c, at, complete);
-  k.whole("epochs", 1, t.epochs);
-  k.whole("batch", 1, t.batch);
-  k.number("learning_rate", {1e-8, 1.0}, t.learning_rate);
-  k.choice("schedule", kSchedules, t.schedule);
-  k.whole("patience", 1, t.patience);
-  if (complete) k.number("validation_share", {0.01, 0.5}, t.validation_share);
-  Keys extra(c, at, false);
-  extra.number("loss_power", {0.0, 1.0}, t.loss_power);
-  extra.number("weight_decay", {0.0, 1.0}, t.weight_decay);
-  extra.number("clip", {0.0, 1e6}, t.clip);
-  extra.number("average", {0.0, 0.99999}, t.average);
-  extra.flag("training_rows", t.training_rows);
-  extra.whole("posterior_epochs", 0, t.posterior_epochs);
-  extra.whole("set_aside", 0, t.set_aside);
+  Keys k(c, at, required_of(complete));
+  k.whole("epochs", 1, t.epochs, "epochs of training");
+  k.whole("batch", 1, t.batch, "rows of a step");
+  k.number("learning_rate", {1e-8, 1.0, "", "learning rate of Adam"}, t.learning_rate);
+  k.choice("schedule", kSchedules, t.schedule, "course of the learning rate");
+  k.whole("patience", 1, t.patience, "epochs without a better validation error before stopping");
+  if (complete)
+    k.number("validation_share", {0.01, 0.5, "", "share of the databank points that validate"},
+             t.validation_share);
+  Keys extra(c, at, default_of(complete));
+  extra.number("loss_power", {0.0, 1.0, "", "weight of a parameter's error: variance to this power"},
+               t.loss_power);
+  extra.number("weight_decay", {0.0, 1.0, "", "decoupled weight decay of matrices"}, t.weight_decay);
+  extra.number("clip", {0.0, 1e6, "", "largest norm of the gradient; 0: no limit"}, t.clip);
+  extra.number("average", {0.0, 0.99999, "", "decay factor of the averaged weights per step"}, t.average);
+  extra.flag("training_rows", t.training_rows, "train on the rows of training_dataset too");
+  extra.whole("posterior_epochs", 0, t.posterior_epochs, "epochs of the posterior head; 0: none");
+  extra.whole("set_aside", 0, t.set_aside, "generators whose rows calibrate the posterior only");
 }
 
 /// A network trained at many noise levels needs the level as an input, which only the form "physics" has.
 void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, NetworkInput& input) {
   if (const std::string name = at + ".training_noise"; c.has(name)) {
-    const auto range = c.require<std::vector<double>>(name, {1e-6, kNoiseLevels.high});
+    const auto range = c.require<std::vector<double>>(
+        name, {1e-6, kNoiseLevels.high, "",
+               "[lowest, highest] level of noise, drawn for every row in every epoch"});
+    const auto zero =
+        c.require<double>(at + ".training_noise_zero", {0.0, 1.0, "", "share of rows without noise"});
     if (range.size() != 2 || range[0] >= range[1])
       c.problem(name, "invalid range of noise levels", "it is a lowest level above 0 and a highest",
                 "give [0.0001, 0.005]");
     else
-      t.noise_levels = {range[0], range[1], c.require<double>(at + ".training_noise_zero", {0.0, 1.0})};
+      t.noise_levels = {range[0], range[1], zero};
   }
   input.recipe.shows_level = t.noise_levels.has_value();
   if (t.noise_levels && input.recipe.form != data::InputForm::physics &&
@@ -91,23 +115,25 @@ void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, Netw
 }
 
 void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i) {
-  Keys k(c, at, complete);
-  k.names("channels", i.recipe.channels);
-  k.number("start_s", {0.0, 1e6, "s"}, i.recipe.start_s);
-  k.number("end_s", {0.0, 1e6, "s"}, i.recipe.end_s);
-  k.whole("slice", 1, i.recipe.slice);
+  Keys k(c, at, required_of(complete));
+  k.names("channels", i.recipe.channels, "channels of the dataset that the network reads");
+  k.number("start_s", {0.0, 1e6, "s", "start of the window"}, i.recipe.start_s);
+  k.number("end_s", {0.0, 1e6, "s", "end of the window, excluded"}, i.recipe.end_s);
+  k.whole("slice", 1, i.recipe.slice, "every slice-th sample is kept");
   std::string form = data::kInputForms.at(static_cast<std::size_t>(i.recipe.form));
-  k.choice("form", data::kInputForms, form);
+  k.choice("form", data::kInputForms, form, "form of the input");
   if (const auto at_form = std::ranges::find(data::kInputForms, form); at_form != data::kInputForms.end())
     i.recipe.form = static_cast<data::InputForm>(at_form - data::kInputForms.begin());
-  k.whole("pca_components", 0, i.pca_components);
-  Keys extra(c, at, false);
-  extra.flag("seconds_as_steps", i.recipe.seconds_as_steps);
+  k.whole("pca_components", 0, i.pca_components, "principal components of each second of a channel; 0: none");
+  Keys extra(c, at, default_of(complete));
+  extra.flag("seconds_as_steps", i.recipe.seconds_as_steps,
+             "a second's components are one step of the series");
   if (i.recipe.seconds_as_steps && i.pca_components == 0)
     c.problem(at + ".seconds_as_steps", "seconds as steps of samples",
               "each step consists of the principal components of one second",
               "give pca_components, or leave it out");
-  extra.flag("regressions", i.recipe.regressions);
+  extra.flag("regressions", i.recipe.regressions,
+             "also read the regressions of each signal on pairs of others");
   if (i.recipe.regressions && i.recipe.form != data::InputForm::physics)
     c.problem(at + ".regressions", "regressions of another form",
               "they are computed from the signals of the form physics",
@@ -129,10 +155,12 @@ void refuse_unknown_posteriors(Config& c, const std::string& at, const TrainingR
 }
 
 void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
-  if (complete || c.has(at + ".noise")) j.noise = c.require<std::vector<double>>(at + ".noise", kNoiseLevels);
-  Keys(c, at, false).whole("test_rows", 1, j.test_rows);
-  if (c.has(at + ".shares"))
-    j.shares = c.require<std::vector<double>>(at + ".shares", {kLeastShare, 1.0 - kLeastShare});
+  Keys(c, at, required_of(complete)).numbers("noise", kNoiseLevels, j.noise);
+  Keys extra(c, at, default_of(complete));
+  extra.whole("test_rows", 1, j.test_rows, "approximate number of test rows to judge; missing: all");
+  extra.numbers("shares",
+                {kLeastShare, 1.0 - kLeastShare, "", "shares of the training rows, one more run each"},
+                j.shares);
 }
 
 /// A table with the name of a network overrides settings for that network only.
@@ -140,20 +168,25 @@ Preset read_preset(Config& c, const std::string& name) {
   const std::string at = "preset." + name;
   Preset p;
   p.name = name;
-  p.draws = static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".draws", {1, 1e12}));
-  p.networks = c.require<std::vector<std::string>>(at + ".networks");
+  p.draws =
+      static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".draws", {1, 1e12, "", "events to simulate"}));
+  const auto known = network_names();
+  p.networks = c.table_names(
+      at + ".networks",
+      {.meaning = fmt::format("networks, copies of networks, or methods: {}", fmt::join(known, ", "))});
   if (c.has("training_dataset"))
-    p.training_draws = static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".training_draws", {0, 1e12}));
+    p.training_draws = static_cast<std::uint64_t>(c.require<std::int64_t>(
+        at + ".training_draws", {0, 1e12, "", "events to simulate of training_dataset"}));
   NetworkInput input;
   TrainingRecipe training;
   read_input(c, at, true, input);
   read_training(c, at, true, training);
   Judging judging;
   read_judging(c, at, true, judging);
-  const auto known = network_names();
   for (const auto& network : p.networks) {
     const std::string own = at + "." + network;
-    const std::string like = c.optional<std::string>(own + ".like", "");
+    const std::string like = c.optional<std::string>(
+        own + ".like", "", {.meaning = "earlier network of the preset that it copies"});
     if (!like.empty() && !p.training.contains(like))
       c.problem(own + ".like", fmt::format("no network called '{}' before '{}'", like, network),
                 "`like` refers to an earlier entry of the preset's networks", "put that one first");
@@ -166,7 +199,8 @@ Preset read_preset(Config& c, const std::string& name) {
     if (std::find(known.begin(), known.end(), kind) == known.end())
       c.problem(at + ".networks", fmt::format("no network called '{}'", kind),
                 "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
-    p.training[network].corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "");
+    p.training[network].corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "",
+                                            {.meaning = "method whose estimates it corrects"});
     if (!p.training[network].corrects.empty()) train_as_judged(p.training[network]);
     read_input(c, own, false, p.input[network]);
     read_training(c, own, false, p.training[network]);
@@ -180,22 +214,25 @@ Preset read_preset(Config& c, const std::string& name) {
   return p;
 }
 
-}  // namespace
-
-Experiment read_experiment(const std::filesystem::path& file) {
-  Config c(file);
+Experiment read_experiment(Config& c) {
+  const std::filesystem::path& file = c.name();
   Experiment e;
   e.file = file;
-  e.table = c.has("table") ? c.choice("table", {"IV", "V", "VI"}) : file.stem().string();
-  e.title = c.require<std::string>("title");
-  e.dataset = c.file("dataset");
-  if (c.has("training_dataset")) e.training_dataset = c.file("training_dataset");
+  e.table = c.has("table") ? c.choice("table", {"IV", "V", "VI"}, Range{.meaning = "table of the thesis"})
+                           : file.stem().string();
+  e.title = c.require<std::string>("title", {.meaning = "title in reports"});
+  e.dataset = c.file("dataset", {.meaning = "config of the dataset, beside this file"});
+  if (c.has("training_dataset"))
+    e.training_dataset =
+        c.file("training_dataset", {.meaning = "config of rows that only train, beside this file"});
   const std::string split =
-      c.choice("split", {"leave-one-generator-out", "by-databank-point", "across-datasets"});
+      c.choice("split", {"leave-one-generator-out", "by-databank-point", "across-datasets"},
+               Range{.meaning = "split into rows that train and rows that judge"});
   e.leave_one_out = split == "leave-one-generator-out";
   e.across = split == "across-datasets";
   if (e.leave_one_out)
-    for (const auto g : c.require<std::vector<std::int64_t>>("folds", {1, 1e9}))
+    for (const auto g : c.require<std::vector<std::int64_t>>(
+             "folds", {1, 1e9, "", "bus numbers of generators to leave out, one fold each"}))
       e.folds.push_back(static_cast<std::int32_t>(g));
   for (const auto& name : c.keys("preset")) {
     e.presets[name] = read_preset(c, name);
@@ -209,6 +246,17 @@ Experiment read_experiment(const std::filesystem::path& file) {
     c.problem("preset", "no preset", "an experiment needs at least one", "add [preset.quick]");
   c.raise();
   return e;
+}
+
+}  // namespace
+
+Experiment read_experiment(const std::filesystem::path& file) {
+  Config c(file);
+  return read_experiment(c);
+}
+
+std::string experiment_schema() {
+  return describe_keys("Experiment of Swingbank", [](Config& c) { read_experiment(c); });
 }
 
 const Preset& Experiment::preset(const std::string& name) const {

@@ -97,5 +97,7 @@ struct Experiment {
 
 /// Reads an experiment. Throws InputError with every problem of the file.
 Experiment read_experiment(const std::filesystem::path& file);
+/// Returns the JSON Schema of experiments.
+std::string experiment_schema();
 
 }  // namespace swingbank::train::loop

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/config.hpp"
+#include "base/describe.hpp"
 #include "validate/event/detail/turns.hpp"
 #include "validate/event/event.hpp"
 #include "validate/event/play.hpp"
@@ -18,12 +19,12 @@ namespace {
 
 Collector read_section(Config& c, const std::string& at) {
   Collector z;
-  const Range any{-10.0, 10.0, "pu"};
-  z.R = c.require<double>(at + ".r_pu", {0.0, 10.0, "pu"});
-  z.X = c.require<double>(at + ".x_pu", any);
-  z.B = c.optional<double>(at + ".b_pu", 0.0, any);
-  z.ratio = c.optional<double>(at + ".ratio", 1.0, {0.5, 2.0, ""});
-  z.mva = c.require<double>(at + ".base_mva", {1e-3, 1e6, "MVA"});
+  z.R = c.require<double>(at + ".r_pu", {0.0, 10.0, "pu", "series resistance"});
+  z.X = c.require<double>(at + ".x_pu", {-10.0, 10.0, "pu", "series reactance"});
+  z.B = c.optional<double>(at + ".b_pu", 0.0, {-10.0, 10.0, "pu", "charging, half at either end"});
+  z.ratio =
+      c.optional<double>(at + ".ratio", 1.0, {0.5, 2.0, "", "voltage at the units over that at the point"});
+  z.mva = c.require<double>(at + ".base_mva", {1e-3, 1e6, "MVA", "base of the values in pu"});
   return z;
 }
 /// Reads one section, [collector], or several, [[collector]].
@@ -43,21 +44,31 @@ std::vector<Collector> read_collector(Config& c) {
   return all;
 }
 
-OtherUnit read_unit(Config& c, const std::string& at, const std::filesystem::path& file, Problems& problems) {
+/// Part of the power of a unit; the unit under test has the remainder, and needs none.
+OtherUnit read_part(Config& c, const std::string& at) {
   OtherUnit unit;
+  unit.share = c.optional<double>(at + ".share", 0.0, {1e-6, 1.0, "", "share of P and Q before the event"});
+  unit.P =
+      c.optional<double>(at + ".P_MW", 0.0, {-1e5, 1e5, "MW", "P before the event, in place of a share"});
+  unit.Q = c.optional<double>(at + ".Q_Mvar", 0.0, {-1e5, 1e5, "Mvar", "Q before the event, with P_MW"});
+  return unit;
+}
+
+void check_part(Config& c, const std::string& at) {
   const bool share = c.has(at + ".share");
-  if (share) {
-    unit.share = c.require<double>(at + ".share", {1e-6, 1.0, ""});
-  } else {
-    unit.P = c.require<double>(at + ".P_MW", {-1e5, 1e5, "MW"});
-    unit.Q = c.require<double>(at + ".Q_Mvar", {-1e5, 1e5, "Mvar"});
-  }
+  for (const char* key : {".P_MW", ".Q_Mvar"})
+    if (share == c.has(at + key))
+      c.problem(at,
+                share ? at + " with share and " + (key + 1) : at + " without share and without " + (key + 1),
+                "its part is given once, by share or by P_MW and Q_Mvar", "give one of them");
+}
+
+void read_model(const std::filesystem::path& file, OtherUnit& unit, Problems& problems) {
   try {
     unit.model = plant::load_plant_model(file);
   } catch (const InputError& error) {
     for (const Problem& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
   }
-  return unit;
 }
 
 /// Returns the mean power before the event [pu].
@@ -68,11 +79,8 @@ Complex mean_power(const record::Record& r, int samples) {
   return sum / static_cast<double>(samples);
 }
 
-}  // namespace
-
-MeasuredPoint load_point(const std::filesystem::path& file, const std::filesystem::path& tried) {
-  Config c(file);
-  MeasuredPoint point{.file = file.string(), .collector = read_collector(c), .tried = {}, .others = {}};
+MeasuredPoint read_point(Config& c, const std::filesystem::path& tried) {
+  MeasuredPoint point{.file = c.name().string(), .collector = read_collector(c), .tried = {}, .others = {}};
   Problems problems;
   bool found = false;
   double shares = 0;
@@ -83,17 +91,20 @@ MeasuredPoint load_point(const std::filesystem::path& file, const std::filesyste
       if (key != "model" && key != "share" && key != "P_MW" && key != "Q_Mvar")
         c.problem(at + "." + key, "unknown key " + key, "a unit has model, and share or P_MW and Q_Mvar",
                   "remove it");
-    const std::filesystem::path model = c.file(at + ".model");
+    const std::filesystem::path model =
+        c.file(at + ".model", {.meaning = "plant file of the unit, beside this file"});
+    OtherUnit unit = read_part(c, at);
     std::error_code error;
     if (model.empty() || !std::filesystem::exists(model, error)) continue;  // reported by the config
     if (std::filesystem::equivalent(model, tried, error)) {
       found = true;
       point.tried = plant::load_plant_model(model);
-      for (const char* key : {".share", ".P_MW", ".Q_Mvar"}) c.ignore(at + key);
       continue;
     }
-    point.others.push_back(read_unit(c, at, model, problems));
-    shares += point.others.back().share;
+    check_part(c, at);
+    read_model(model, unit, problems);
+    shares += unit.share;
+    point.others.push_back(std::move(unit));
   }
   if (!found)
     c.problem("unit", "the plant file " + tried.string() + " is none of the units",
@@ -105,6 +116,17 @@ MeasuredPoint load_point(const std::filesystem::path& file, const std::filesyste
   for (const Problem& p : problems.list()) c.problem("unit", p.what + " at " + p.where, p.why, p.remedy);
   c.raise();
   return point;
+}
+
+}  // namespace
+
+MeasuredPoint load_point(const std::filesystem::path& file, const std::filesystem::path& tried) {
+  Config c(file);
+  return read_point(c, tried);
+}
+
+std::string point_schema() {
+  return describe_keys("Point file of Swingbank", [](Config& c) { read_point(c, {}); });
 }
 
 namespace {

@@ -38,6 +38,8 @@ struct MeasuredPoint {
 /// with every fault of it: unknown keys, units that cannot be read, tested unit missing, shares of the others
 /// that add up to 1 or more.
 MeasuredPoint load_point(const std::filesystem::path& file, const std::filesystem::path& tried);
+/// Returns the JSON Schema of point files.
+std::string point_schema();
 /// Reads a point file for a model read before. If a control of that model measures at another bus, it is set
 /// to measure at the point.
 MeasuredPoint load_point(const std::filesystem::path& file, plant::PlantModel& tried);

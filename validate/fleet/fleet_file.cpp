@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "base/config.hpp"
+#include "base/describe.hpp"
 
 namespace swingbank::validate::fleet {
 namespace {
@@ -15,30 +16,35 @@ bool is_name(const std::string& name) {
   return !name.empty() && name.size() <= 100 && std::ranges::all_of(name, allowed);
 }
 
+/// Reads the options of one plant or of all; missing ones keep their values.
+void read_options(Config& c, const std::string& at, FleetPlant& p) {
+  p.prior_sd = c.optional<double>(at + "spread", p.prior_sd,
+                                  {0.001, 2.0, "relative", "prior standard deviation of the parameters"});
+  p.power_only =
+      c.optional<bool>(at + "power_only", p.power_only,
+                       {.meaning = "compare P and Q only, even if speed, Efd and Ifd are recorded"});
+}
+
 FleetPlant read_plant(Config& c, const std::string& name, const fs::path& folder, const FleetPlant& common) {
   const std::string at = "plant." + name + ".";
   FleetPlant p = common;
   p.name = name;
-  p.model = folder / c.require<std::string>(at + "model");
-  p.records = c.require<std::vector<std::string>>(at + "records");
-  p.prior_sd = c.optional<double>(at + "spread", common.prior_sd, {0.001, 2.0, "relative"});
-  p.power_only = c.optional<bool>(at + "power_only", common.power_only);
+  p.model = folder / c.require<std::string>(at + "model", {.meaning = "plant file, beside this file"});
+  p.records = c.require<std::vector<std::string>>(
+      at + "records", {.meaning = "records of two events or more: files and globs, beside this file"});
+  read_options(c, at, p);
   if (c.has(at + "records") && p.records.empty())
     c.problem(at + "records", "no record", "a diagnosis needs those of two events or more",
               "list files or globs");
   return p;
 }
 
-}  // namespace
-
-Fleet load_fleet(const fs::path& file) {
-  Config c(file);
+Fleet read_fleet(Config& c, const fs::path& file) {
   Fleet fleet{file, file.parent_path(), {}};
   FleetPlant common;
-  common.prior_sd = c.optional<double>("options.spread", common.prior_sd, {0.001, 2.0, "relative"});
-  common.power_only = c.optional<bool>("options.power_only", false);
+  read_options(c, "options.", common);
   for (const auto& name : c.keys("plant")) {
-    if (is_name(name)) {
+    if (is_name(name) || name == kAnyName) {
       fleet.plants.push_back(read_plant(c, name, fleet.folder, common));
       continue;
     }
@@ -50,6 +56,17 @@ Fleet load_fleet(const fs::path& file) {
     c.problem("plant", "no plant", "a fleet has one [plant.NAME] at least", "see configs/fleet/README.md");
   c.raise();
   return fleet;
+}
+
+}  // namespace
+
+Fleet load_fleet(const fs::path& file) {
+  Config c(file);
+  return read_fleet(c, file);
+}
+
+std::string fleet_schema() {
+  return describe_keys("Fleet of Swingbank", [](Config& c) { read_fleet(c, {}); });
 }
 
 }  // namespace swingbank::validate::fleet

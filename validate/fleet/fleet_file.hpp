@@ -22,5 +22,7 @@ struct Fleet {
 /// Reads a fleet file (configs/fleet/README.md). Throws InputError with every error of the file. A missing
 /// model or record is reported with its plant later, so that it does not stop the others.
 Fleet load_fleet(const std::filesystem::path& file);
+/// Returns the JSON Schema of fleet files.
+std::string fleet_schema();
 
 }  // namespace swingbank::validate::fleet

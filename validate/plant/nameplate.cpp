@@ -100,14 +100,17 @@ void read_field(Config& config, const Field& field, const std::string& key, Name
   const std::string full = "nameplate." + key;
   if (!config.has(full)) return;
   if (field.kind == FieldKind::rating) {
-    into.values[key] = config.require<double>(full, {1e-9, 1e9, std::string(field.unit)});
+    into.values[key] =
+        config.require<double>(full, {1e-9, 1e9, std::string(field.unit), std::string(field.meaning)});
     return;
   }
+  const Range about{.meaning = std::string(field.meaning) +
+                               (field.kind == FieldKind::date ? " (2026, 2026-03 or 2026-03-01)" : "")};
   if (!config.is_text(full)) {
-    config.require<std::string>(full);
+    config.require<std::string>(full, about);
     return;
   }
-  const auto text = config.require<std::string>(full);
+  const auto text = config.require<std::string>(full, about);
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     config.problem(full, full + " = \"\"", "it is empty",
                    "write the " + std::string(field.meaning) + ", or leave the key out");

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/config.hpp"
+#include "base/describe.hpp"
 #include "base/input_file.hpp"
 #include "base/sha256.hpp"
 #include "sim/plant/orderings.hpp"
@@ -23,17 +24,22 @@ using sim::Slot;
 constexpr double kSmallest = 1e-9;     ///< lower bound of bases and frequencies
 constexpr double kMostBuses = 999999;  ///< largest bus number of PSS/E
 
+constexpr const char* kUserModels = "laws";           ///< key of the files of user-defined models
 constexpr std::string_view kConverter = "converter";  ///< section of a converter as the source
 
 using sim::library::EffectLibrary;
 
-/// Returns the names of the effects of one slot; `section` selects machines or converters.
-std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot, std::string_view section = {}) {
-  std::vector<std::string> names;
+/// Returns a text of each effect of one slot; `section` selects machines or converters.
+std::vector<std::string> texts_of(const EffectLibrary& library, Slot slot, std::string_view section,
+                                  std::string_view sim::Effect::*text) {
+  std::vector<std::string> texts;
   for (const auto* e : library.all())
     if (e->slot == slot && (slot != Slot::machine || e->converter == (section == kConverter)))
-      names.emplace_back(e->name);
-  return names;
+      texts.emplace_back(e->*text);
+  return texts;
+}
+std::vector<std::string> effects_of(const EffectLibrary& library, Slot slot, std::string_view section = {}) {
+  return texts_of(library, slot, section, &sim::Effect::name);
 }
 
 /// Adds a warning with its line for each unusual value of a section.
@@ -53,22 +59,28 @@ void warn_unusual(const Config& config, const std::string& section, const sim::p
 /// ones, are noted in the model.
 sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const std::string& section) {
   const EffectLibrary& library = model.library;
+  const Branch effects{.words = effects_of(library, slot, section),
+                       .titles = texts_of(library, slot, section, &sim::Effect::title),
+                       .opened_by = kUserModels};
   sim::plant::Block block{
-      library.find(config.choice(section + ".effect", effects_of(library, slot, section))), {}};
+      library.find(config.branch(section + ".effect", effects, {.meaning = "name of the effect"})), {}};
   if (!block.effect || block.effect->slot != slot) {
     config.ignore(section);  // its keys belong to the intended effect
     return {};
   }
   const bool sound = config.sound();
-  const bool may_miss = config.optional<bool>(section + ".standard", false);
+  const bool may_miss =
+      config.optional<bool>(section + ".standard", false,
+                            {.meaning = "true: a missing parameter has its default, and reports list it"});
+  const auto given = config.keys(section);
   for (const auto& p : block.effect->parameters) {
     const std::string key = fmt::format("{}.{}", section, p.name);
-    if (may_miss && !config.has(key)) {
-      block.p.push_back(p.default_value);
+    const Range about{.unit = std::string(p.unit),
+                      .meaning = fmt::format("{}; usually {:g} to {:g}", p.meaning, p.low, p.high)};
+    block.p.push_back(may_miss ? config.optional<double>(key, p.default_value, about)
+                               : config.require<double>(key, about));
+    if (may_miss && !std::ranges::count(given, p.name))
       model.defaults.push_back(fmt::format("{}.{}", block.effect->name, p.name));
-    } else {
-      block.p.push_back(config.require<double>(key));
-    }
   }
   if (!sound || !config.sound()) return block;
   Problems problems;
@@ -171,20 +183,34 @@ void read_around(Config& config, PlantModel& model) {
                      why, "remove the section");
 }
 
+/// Returns the value of a parameter of a plant, nullptr if it has no such effect or parameter.
+double* value_in(sim::plant::Plant& plant, const std::string& effect, const std::string& name) {
+  const auto find = [&](sim::plant::Block& block) -> double* {
+    if (!block.effect || block.effect->name != effect) return nullptr;
+    const int i = block.effect->parameter_index(name);
+    return i < 0 ? nullptr : &block.p.at(static_cast<std::size_t>(i));
+  };
+  double* value = find(plant.machine);
+  if (!value) value = find(plant.transformer);
+  for (auto& control : plant.controls)
+    if (!value) value = find(control);
+  return value;
+}
+
 /// Reads the values before a rejected calibration, by effect and parameter.
 void read_submitted(Config& config, PlantModel& model) {
   if (!config.has("submitted")) return;
   sim::plant::Plant plant = model.plant;
-  const auto take = [&](sim::plant::Block& block) {
-    for (std::size_t i = 0; block.effect && i < block.p.size(); ++i) {
-      const auto& p = block.effect->parameters[i];
-      const std::string key = fmt::format("submitted.{}.{}", block.effect->name, p.name);
-      if (config.has(key)) block.p[i] = config.require<double>(key);
+  for (const auto& effect : config.keys("submitted"))
+    for (const auto& name : config.keys("submitted." + effect)) {
+      const std::string key = fmt::format("submitted.{}.{}", effect, name);
+      const auto before =
+          config.require<double>(key, {.meaning = "value before a calibration that was not adequate"});
+      if (double* value = value_in(plant, effect, name))
+        *value = before;
+      else
+        config.problem(key, "unknown key " + key, "the plant has no such effect or parameter", "remove it");
     }
-  };
-  take(plant.machine);
-  take(plant.transformer);
-  for (auto& control : plant.controls) take(control);
   model.submitted = std::move(plant);
   model.warnings.push_back(
       fmt::format("{} is the result of a calibration that was not adequate: its parameters are biased",
@@ -194,23 +220,27 @@ void read_submitted(Config& config, PlantModel& model) {
 /// Loads the files of user-defined models of the plant, and adds their effects to the library.
 std::vector<fs::path> read_user_models(Config& config, EffectLibrary& library) {
   std::vector<fs::path> files;
-  for (const auto& name : config.optional<std::vector<std::string>>("laws", {})) {
+  for (const auto& name : config.optional<std::vector<std::string>>(
+           kUserModels, {}, {.meaning = "files of user-defined models, beside this file"})) {
     const fs::path file = (config.name().parent_path() / name).lexically_normal();
     try {
       sim::user_models::load_user_model(file, library);
       files.push_back(file);
     } catch (const InputError& error) {
       for (const auto& p : error.problems())
-        config.problem("laws", p.what + " in " + p.where, p.why, p.remedy);
+        config.problem(kUserModels, p.what + " in " + p.where, p.why, p.remedy);
     }
   }
   return files;
 }
 
 sim::Conventions read_conventions(Config& config, double hz) {
-  auto read = config.choice("plant.conventions", {"psse", "andes"}) == "andes" ? sim::Conventions::andes(hz)
-                                                                               : sim::Conventions::psse(hz);
-  read.speed_voltage = config.optional<bool>("plant.speed_voltage", read.speed_voltage);
+  const Range about{.meaning = "psse: the governor sets power; andes: it sets torque"};
+  auto read = config.choice("plant.conventions", {"psse", "andes"}, about) == "andes"
+                  ? sim::Conventions::andes(hz)
+                  : sim::Conventions::psse(hz);
+  read.speed_voltage = config.optional<bool>("plant.speed_voltage", read.speed_voltage,
+                                             {.meaning = "true: flux linkages' voltage scales with speed"});
   return read;
 }
 
@@ -223,21 +253,26 @@ void note_defaults(PlantModel& model, const std::vector<std::string>& effects) {
 
 void read_from_grid(Config& config, PlantModel& model) {
   for (const char* twice : {"plant.base_mva", "machine", "converter"})
-    if (config.has(twice))
-      config.problem(twice, std::string(twice) + " beside [grid]", "the grid's files give it already",
-                     "remove one of them");
-  sim::grid::UnitChoice choice{.raw = config.file("grid.raw"), .dyr = config.file("grid.dyr")};
-  choice.bus = static_cast<int>(config.require<std::int64_t>("grid.bus", {1.0, kMostBuses}));
+    config.exclude(twice, std::string(twice) + " beside [grid]", "the grid's files give it already",
+                   "remove one of them");
+  sim::grid::UnitChoice choice{
+      .raw = config.file("grid.raw", {.meaning = "network (.raw or .m), beside this file"}),
+      .dyr = config.file("grid.dyr", {.meaning = "dynamic models (.dyr or .dyd), beside this file"})};
+  choice.bus = static_cast<int>(
+      config.require<std::int64_t>("grid.bus", {1.0, kMostBuses, "", "bus number of the unit"}));
   choice.dyd = sim::formats::is_dyd(choice.dyr);
-  choice.id = config.optional<std::string>("grid.id", "");
+  choice.id =
+      config.optional<std::string>("grid.id", "", {.meaning = "id of the unit, if its bus has several"});
   choice.models = sim::formats::read_dyr_options(config, "grid.");
-  const std::string complete = config.choice("grid.complete_records", {"no", "zero", "standard"}, "no");
+  const std::string complete =
+      config.choice("grid.complete_records", {"no", "zero", "standard"}, "no",
+                    {.meaning = "completion of records that are shorter than their model"});
   choice.complete_records = complete == "zero"       ? sim::grid::Lacking::zero
                             : complete == "standard" ? sim::grid::Lacking::standard
                                                      : sim::grid::Lacking::refused;
   if (config.has("grid.measured_at"))
-    choice.measured_at =
-        static_cast<int>(config.require<std::int64_t>("grid.measured_at", {1.0, kMostBuses}));
+    choice.measured_at = static_cast<int>(config.require<std::int64_t>(
+        "grid.measured_at", {1.0, kMostBuses, "", "bus of the records, behind the unit's transformer"}));
   if (!config.sound()) return;
   choice.frequency_hz = model.conventions.frequency;
   const sim::grid::Unit unit = sim::grid::read_unit(choice);
@@ -268,41 +303,48 @@ bool is_columns(std::string_view text) {
   return false;
 }
 
-PlantModel parse_with_user_models(const std::string& text, const fs::path& file,
-                                  const std::vector<fs::path>& user_models) {
-  if (is_columns(text))
-    throw InputError({"a record", file.string(), "a plant file was asked for",
-                      "give the plant file (.toml) as --model, and the record as --records"});
-  Config config(text, file);
-  PlantModel model;
-  for (const auto& user_model : user_models) sim::user_models::load_user_model(user_model, model.library);
-  model.origin = file.string();
-  model.sha256 = sha256(text);
+PlantModel read_plant(Config& config, PlantModel model) {
   model.user_models = read_user_models(config, model.library);
-  model.name = config.require<std::string>("plant.name");
-  config.optional<std::string>("plant.origin", "");
-  const auto hz = config.require<double>("plant.frequency_hz", {kSmallest, 1000.0, "Hz"});
+  model.name =
+      config.require<std::string>("plant.name", {.meaning = "name of the plant, printed in reports"});
+  config.optional<std::string>("plant.origin", "", {.meaning = "source of the figures"});
+  const auto hz =
+      config.require<double>("plant.frequency_hz", {kSmallest, 1000.0, "Hz", "nominal frequency, 50 or 60"});
   model.conventions = read_conventions(config, hz);
   model.record_base.frequency = hz;
-  model.record_base.mva = config.require<double>("record.base_mva", {kSmallest, 1e9, "MVA"});
-  model.record_base.kv = config.optional<double>("record.base_kv", 0.0, {kSmallest, 1e9, "kV"});
-  model.record_base.efd = config.optional<double>("record.efd_base", 0.0, {kSmallest, 1e9, "V or pu"});
-  model.record_base.ifd = config.optional<double>("record.ifd_base", 0.0, {kSmallest, 1e9, "A or pu"});
+  model.record_base.mva = config.require<double>(
+      "record.base_mva", {kSmallest, 1e9, "MVA", "base of P_pu and Q_pu of this plant's records"});
+  model.record_base.kv = config.optional<double>(
+      "record.base_kv", 0.0,
+      {kSmallest, 1e9, "kV", "base of the voltage, needed if a record gives it in kV"});
+  model.record_base.efd = config.optional<double>(
+      "record.efd_base", 0.0, {kSmallest, 1e9, "V or pu", "1 pu (air-gap line) of Efd in the records' unit"});
+  model.record_base.ifd = config.optional<double>(
+      "record.ifd_base", 0.0, {kSmallest, 1e9, "A or pu", "1 pu (air-gap line) of Ifd in the records' unit"});
   if (config.has("dispatch"))
-    model.dispatch = {config.require<double>("dispatch.P_MW"), config.require<double>("dispatch.Q_Mvar"),
-                      config.require<double>("dispatch.V_pu", {kSmallest, 10.0, "pu"})};
+    model.dispatch = {
+        config.require<double>("dispatch.P_MW",
+                               {.unit = "MW", .meaning = "active power of the unit in its case"}),
+        config.require<double>("dispatch.Q_Mvar", {.unit = "Mvar", .meaning = "its reactive power"}),
+        config.require<double>("dispatch.V_pu",
+                               {kSmallest, 10.0, "pu", "voltage at the bus of its records"})};
   model.nameplate = read_nameplate(config);
   model.reading.staged = read_staged_events(config);
   for (const auto& word : config.keys("record.columns"))
-    model.reading.columns[word] = config.require<std::string>("record.columns." + word);
+    model.reading.columns[word] = config.require<std::string>(
+        "record.columns." + word, {.meaning = "column of the records, as V = \"NORTH.BUS1.VPM [kV]\""});
   if (config.has("grid")) {
     read_from_grid(config, model);
   } else {
-    model.plant.mva = config.require<double>("plant.base_mva", {kSmallest, 1e9, "MVA"});
+    model.plant.mva = config.require<double>(
+        "plant.base_mva",
+        {kSmallest, 1e9, "MVA", "machine base: per-unit parameters of this file are on it"});
     model.plant.name = model.name;
-    model.bus = static_cast<int>(config.optional<std::int64_t>("plant.bus", 0, {1.0, kMostBuses}));
-    model.id = config.optional<std::string>("plant.id", model.id);
-    const std::string source = config.has("converter") && !config.has("machine") ? "converter" : "machine";
+    model.bus = static_cast<int>(config.optional<std::int64_t>(
+        "plant.bus", 0, {1.0, kMostBuses, "", "bus number of the unit, for its .dyr records"}));
+    model.id = config.optional<std::string>("plant.id", model.id,
+                                            {.meaning = "id of the unit, for its .dyr records"});
+    const std::string source = config.has("machine") || !config.has("converter") ? "machine" : "converter";
     model.plant.machine = read_block(config, model, Slot::machine, source);
     if (const auto base = foreign_base(model.plant.machine, model.plant.mva))
       model.warnings.push_back(
@@ -315,12 +357,29 @@ PlantModel parse_with_user_models(const std::string& text, const fs::path& file,
   return model;
 }
 
+PlantModel parse_with_user_models(const std::string& text, const fs::path& file,
+                                  const std::vector<fs::path>& user_models) {
+  if (is_columns(text))
+    throw InputError({"a record", file.string(), "a plant file was asked for",
+                      "give the plant file (.toml) as --model, and the record as --records"});
+  Config config(text, file);
+  PlantModel model;
+  for (const auto& user_model : user_models) sim::user_models::load_user_model(user_model, model.library);
+  model.origin = file.string();
+  model.sha256 = sha256(text);
+  return read_plant(config, std::move(model));
+}
+
 }  // namespace
 
 std::string subject(const PlantModel& model) {
   if (model.reading.component == record::Component::plant)
     return std::string(model.plant.machine.effect->name);
   return std::string(record::component_name(model.reading.component)) + " alone";
+}
+
+std::string plant_schema() {
+  return describe_keys("Plant file of Swingbank", [](Config& config) { read_plant(config, {}); });
 }
 
 PlantModel parse_plant_model(const std::string& text, const fs::path& file) {

@@ -55,6 +55,8 @@ std::string subject(const PlantModel& model);
 PlantModel load_plant_model(const std::filesystem::path& file);
 /// Reads a plant file from its text; `file` denotes it in messages, and relative paths refer to its folder.
 PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file);
+/// Returns the JSON Schema of plant files.
+std::string plant_schema();
 /// Returns the model to fit or diagnose: as before a rejected calibration, otherwise unchanged.
 PlantModel as_submitted(PlantModel model);
 /// Returns the model of one unit of a case, with the values of the case; `files` names its files in messages.

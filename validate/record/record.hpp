@@ -168,6 +168,9 @@ constexpr int kStagedKinds = 5;  ///< number of kinds of staged events
 Record parse_record(std::string_view text, const std::string& name, const RecordBase& base,
                     const ReadOptions& options = {});
 
+/// Returns the JSON Schema of a row of a record as an object: its columns with units and meaning.
+std::string record_schema();
+
 /// Returns the samples from `from` to `until` [s] with unchanged times. Throws InputError if too few remain.
 Record stretch(Record record, double from, double until);
 

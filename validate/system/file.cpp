@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/config.hpp"
+#include "base/describe.hpp"
 #include "base/sha256.hpp"
 #include "sim/formats/event_text.hpp"
 #include "sim/grid/attach.hpp"
@@ -48,7 +49,9 @@ std::string event_key(sim::grid::EventPart part) {
 }
 
 sim::grid::EventTexts read_texts(Config& c) {
-  const auto list = [&](sim::grid::EventPart part) { return c.optional<Texts>(event_key(part), {}); };
+  const auto list = [&](sim::grid::EventPart part) {
+    return c.optional<Texts>(event_key(part), {}, {.meaning = "as the option of swingbank simulate"});
+  };
   sim::grid::EventTexts t;
   t.faults = list(sim::grid::EventPart::fault);
   t.trips = list(sim::grid::EventPart::trip);
@@ -56,8 +59,10 @@ sim::grid::EventTexts read_texts(Config& c) {
   t.load_steps = list(sim::grid::EventPart::load_step);
   t.vref_steps = list(sim::grid::EventPart::vref_step);
   t.pref_steps = list(sim::grid::EventPart::pref_step);
-  t.fault_type = c.choice(event_key(sim::grid::EventPart::fault_type), {"3ph", "slg", "ll", "llg"}, "3ph");
-  t.z0 = c.optional<std::string>(event_key(sim::grid::EventPart::z0), "");
+  t.fault_type = c.choice(event_key(sim::grid::EventPart::fault_type), {"3ph", "slg", "ll", "llg"}, "3ph",
+                          {.meaning = "type of the faults"});
+  t.z0 = c.optional<std::string>(event_key(sim::grid::EventPart::z0), "",
+                                 {.meaning = "zero-sequence impedance, as the option of swingbank simulate"});
   if (t.faults.empty() && t.trips.empty() && t.generator_trips.empty() && t.load_steps.empty() &&
       t.vref_steps.empty() && t.pref_steps.empty())
     c.problem("event", "no event", "the simulation has no disturbance",
@@ -68,22 +73,31 @@ sim::grid::EventTexts read_texts(Config& c) {
 
 void read_grid(Config& c, SystemCase& s) {
   sim::library::EffectLibrary library;
-  for (const auto& name : c.optional<Texts>("laws", {}))
+  for (const auto& name :
+       c.optional<Texts>("laws", {}, {.meaning = "files of user-defined models, beside this file"}))
     attempt(c, "laws", [&] {
       const fs::path user_model = (c.name().parent_path() / name).lexically_normal();
       sim::user_models::load_user_model(user_model, library);
       s.user_models.emplace_back(user_model, sha256_of(user_model));
     });
-  s.raw = c.file("system.raw");
-  s.dyr = c.file("system.dyr");
-  const auto conventions = c.choice("system.conventions", {"psse", "andes"}) == "andes"
+  s.raw = c.file("system.raw", {.meaning = "network (.raw or .m), beside this file"});
+  s.dyr = c.file("system.dyr", {.meaning = "dynamic models, beside this file"});
+  const auto conventions = c.choice("system.conventions", {"psse", "andes"},
+                                    Range{.meaning = "psse: governors set power; andes: torque"}) == "andes"
                                ? sim::Conventions::andes()
                                : sim::Conventions::psse();
   std::optional<double> hz;
-  if (c.has("system.frequency_hz")) hz = c.require<double>("system.frequency_hz", {1.0, 1000.0, "Hz"});
+  if (c.has("system.frequency_hz"))
+    hz = c.require<double>("system.frequency_hz",
+                           {1.0, 1000.0, "Hz", "nominal frequency, for a network in .m"});
   const sim::formats::DyrOptions models = sim::formats::read_dyr_options(c, "system.");
-  const auto attached = c.optional<Texts>("system.attach", {}), loads = c.optional<Texts>("system.load", {});
-  const bool composed = c.choice("system.loads", {"impedance", "raw"}, "impedance") == "raw";
+  const auto attached =
+                 c.optional<Texts>("system.attach", {},
+                                   {.meaning = "PLANT:EFFECT:PARAM=VALUE,...: effects that the .dyr lacks"}),
+             loads = c.optional<Texts>("system.load", {},
+                                       {.meaning = "load models, as swingbank simulate --load"});
+  const bool composed =
+      c.choice("system.loads", {"impedance", "raw"}, "impedance", {.meaning = "model of all loads"}) == "raw";
   if (!c.sound()) return;
   s.raw_sha256 = sha256_of(s.raw);
   s.dyr_sha256 = sha256_of(s.dyr);
@@ -133,10 +147,11 @@ bool is_repeatable(const sim::plant::Block& instrument, double frequency) {
 }
 
 /// Adds the instruments of the plant, then those of the file.
-void add_instruments(Config& c, const std::string& key, const SystemCase& s, SystemTerminal& t) {
+void add_instruments(Config& c, const std::string& key, const Texts& texts, const SystemCase& s,
+                     SystemTerminal& t) {
   if (t.plant >= 0) t.instruments = s.grid.plants[static_cast<std::size_t>(t.plant)].measurements;
   Problems problems;
-  for (const auto& text : c.optional<Texts>(key, {}))
+  for (const auto& text : texts)
     if (auto block = sim::plant::read_measurement(text, s.grid.library, "instrument " + text, problems))
       t.instruments.push_back(std::move(*block));
   report_problems(c, key, problems);
@@ -156,9 +171,13 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   if (is_bus == c.has(at + "plant"))
     c.problem("terminal." + name, "terminal " + name, "it is at a plant or at a bus",
               "give plant or bus, one of them");
-  const auto number = c.optional<std::int64_t>(at + "bus", 0, {1, 999999, ""});
-  const auto plant = c.optional<std::string>(at + "plant", "");
-  const auto file = c.require<std::string>(at + "record");
+  const auto number =
+      c.optional<std::int64_t>(at + "bus", 0, {1, 999999, "", "bus number, in place of a plant"});
+  const auto plant = c.optional<std::string>(at + "plant", "", {.meaning = "name of the plant: 2, 30/1"});
+  const auto file =
+      c.require<std::string>(at + "record", {.meaning = "FILE or FILE#TERMINAL, beside this file"});
+  const auto instruments =
+      c.optional<Texts>(at + "instruments", {}, {.meaning = "instruments of this record"});
   if (!c.sound()) return;
   if (is_bus) {
     Problems problems;
@@ -168,7 +187,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
     t.plant = plant_named(c, at + "plant", plant, s.grid);
     if (t.plant >= 0) t.bus = s.grid.plants[static_cast<std::size_t>(t.plant)].bus;
   }
-  add_instruments(c, at + "instruments", s, t);
+  add_instruments(c, at + "instruments", instruments, s, t);
   if (t.bus < 0) return;
   attempt(c, at + "record", [&] {
     t.record = record::read_record(c.name().parent_path() / file, s.base, {.power = !is_bus});
@@ -207,23 +226,25 @@ void check_clocks(Config& c, const SystemCase& s) {
                 "they do not fit those of the other terminals", "give all records on one clock");
 }
 
-}  // namespace
-
-SystemCase load_system(const fs::path& file) {
-  Config c(file);
-  SystemCase s;
-  s.file = file;
-  s.sha256 = sha256_of(file);
-  s.name = c.require<std::string>("system.name");
-  s.base.mva = c.require<double>("record.base_mva", {1e-9, 1e9, "MVA"});
-  s.base.kv = c.optional<double>("record.base_kv", 0.0, {1e-9, 1e9, "kV"});
+SystemCase read_system(Config& c, SystemCase s) {
+  s.name = c.require<std::string>("system.name", {.meaning = "name of the system, printed in reports"});
+  s.base.mva =
+      c.require<double>("record.base_mva", {1e-9, 1e9, "MVA", "base of P_pu and Q_pu of the records"});
+  s.base.kv = c.optional<double>("record.base_kv", 0.0,
+                                 {1e-9, 1e9, "kV", "base of the voltage, needed if a record gives it in kV"});
   s.texts = read_texts(c);
-  s.switching_times_from_records = c.choice("event.instants", {"given", "found"}, "given") == "found";
-  s.steady_state = c.choice("compare.steady_state", {"judge", "shift"}, "judge") == "shift"
-                       ? SteadyState::shift
-                       : SteadyState::judge;
-  s.tolerance = c.optional<double>("compare.tolerance", s.tolerance, {1e-12, 1e-4, "relative"});
-  const auto reference = c.optional<std::string>("compare.reference", "");
+  s.switching_times_from_records =
+      c.choice("event.instants", {"given", "found"}, "given",
+               {.meaning = "switching times: as given, or estimated from the records"}) == "found";
+  s.steady_state =
+      c.choice("compare.steady_state", {"judge", "shift"}, "judge",
+               {.meaning = "difference before the event: it counts, or is subtracted"}) == "shift"
+          ? SteadyState::shift
+          : SteadyState::judge;
+  s.tolerance = c.optional<double>("compare.tolerance", s.tolerance,
+                                   {1e-12, 1e-4, "relative", "tolerance of the integrator"});
+  const auto reference = c.optional<std::string>(
+      "compare.reference", "", {.meaning = "terminal that the angles of the others are relative to"});
   read_grid(c, s);
   if (c.sound()) s.base.frequency = s.grid.network.frequency;
   const auto names = c.keys("terminal");
@@ -258,6 +279,20 @@ SystemCase load_system(const fs::path& file) {
   }
   c.raise();
   return s;
+}
+
+}  // namespace
+
+SystemCase load_system(const fs::path& file) {
+  Config c(file);
+  SystemCase s;
+  s.file = file;
+  s.sha256 = sha256_of(file);
+  return read_system(c, std::move(s));
+}
+
+std::string system_schema() {
+  return describe_keys("System file of Swingbank", [](Config& c) { read_system(c, {}); });
 }
 
 }  // namespace swingbank::validate::system

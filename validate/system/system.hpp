@@ -43,6 +43,8 @@ struct SystemCase {
 /// Reads a system file (configs/systems/README.md), its grid and every record. Throws InputError with every
 /// error of each of them.
 SystemCase load_system(const std::filesystem::path& file);
+/// Returns the JSON Schema of system files.
+std::string system_schema();
 
 /// Result of one terminal.
 struct TerminalRank {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/config.hpp"
+#include "base/describe.hpp"
 #include "validate/thresholds/adequacy.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
@@ -51,10 +52,13 @@ constexpr std::array<std::string_view, 3> kKeys = {"pre_fault", "fault", "post_f
 
 Acceptance read(Config& file) {
   Acceptance a;
-  a.name = file.require<std::string>("name");
-  a.source = file.require<std::string>("source");
+  a.name = file.require<std::string>("name", {.meaning = "name of the limits, printed with the verdict"});
+  a.source =
+      file.require<std::string>("source", {.meaning = "source of the limits, printed with the verdict"});
   const Acceptance* from = nullptr;
-  if (file.has("preset")) from = preset(file.choice("preset", acceptance_presets()));
+  if (file.has("preset"))
+    from = preset(file.choice("preset", acceptance_presets(),
+                              Range{.meaning = "preset of the limits that this file omits"}));
   const auto number = [&](const std::string& key, double otherwise, const Range& range) {
     return from ? file.optional<double>(key, otherwise, range) : file.require<double>(key, range);
   };
@@ -63,17 +67,23 @@ Acceptance read(Config& file) {
       const auto at = static_cast<std::size_t>(phase);
       const std::string table = fmt::format("{}.{}.", channel == 0 ? "P" : "Q", kKeys[at]);
       const Errors otherwise = from ? from->of(channel, phase) : Errors{};
-      const Range percent{0.001, kMostPercent, "% of MVA"};
-      a.limits[static_cast<std::size_t>(channel)][at] = {number(table + "mxe", otherwise.mxe, percent),
-                                                         number(table + "me", otherwise.me, percent),
-                                                         number(table + "mae", otherwise.mae, percent)};
+      const auto limit = [&](const char* key, double value, const char* meaning) {
+        return number(table + key, value, {0.001, kMostPercent, "% of MVA", meaning});
+      };
+      a.limits[static_cast<std::size_t>(channel)][at] = {
+          limit("mxe", otherwise.mxe, "largest absolute value of modelled - measured"),
+          limit("me", otherwise.me, "absolute value of the mean of modelled - measured"),
+          limit("mae", otherwise.mae, "mean absolute value of modelled - measured")};
     }
   a.after_fault =
-      file.optional<double>("left_out.after_fault", from ? from->after_fault : 0, {0, kMostAfterFault, "s"});
-  a.after_clearing = file.optional<double>("left_out.after_clearing", from ? from->after_clearing : 0,
-                                           {0, kMostAfterClearing, "s"});
-  a.movement =
-      file.optional<double>("movement.error", movement.error, {0.001, kMostPercent, "% of movement"});
+      file.optional<double>("left_out.after_fault", from ? from->after_fault : 0,
+                            {0, kMostAfterFault, "s", "time left out after the first switching of a fault"});
+  a.after_clearing =
+      file.optional<double>("left_out.after_clearing", from ? from->after_clearing : 0,
+                            {0, kMostAfterClearing, "s", "time left out after the last switching"});
+  a.movement = file.optional<double>(
+      "movement.error", movement.error,
+      {0.001, kMostPercent, "% of movement", "RMS of modelled - measured after the last switching"});
   file.raise();
   return a;
 }
@@ -105,6 +115,10 @@ Acceptance read_acceptance(const std::string& what) {
 Acceptance parse_acceptance(const std::string& text, const std::string& name) {
   Config file{text, std::filesystem::path(name)};
   return read(file);
+}
+
+std::string acceptance_schema() {
+  return describe_keys("Limits of fitness of Swingbank", [](Config& file) { read(file); });
 }
 
 Nearest nearest(const Errors& errors, const Errors& limits) {

@@ -41,6 +41,8 @@ std::vector<std::string> acceptance_presets();
 Acceptance read_acceptance(const std::string& what);
 /// Reads limits from a file's text; `name` is the file name in messages.
 Acceptance parse_acceptance(const std::string& text, const std::string& name);
+/// Returns the JSON Schema of the files.
+std::string acceptance_schema();
 
 /// The error of one window with the largest ratio to its limit.
 struct Nearest {

@@ -23,21 +23,25 @@ std::vector<std::string> kind_names() {
 record::StagedEvent read_one(Config& config, const std::string& section) {
   record::StagedEvent e;
   const auto names = kind_names();
-  const std::string kind = config.choice(section + ".kind", names);
+  const std::string kind =
+      config.choice(section + ".kind", names, Range{.meaning = "kind of the staged test"});
   const auto at = std::ranges::find(names, kind);
   if (at == names.end()) return e;
   e.kind = static_cast<Kind>(at - names.begin());
-  e.record = config.optional<std::string>(section + ".record", "");
+  e.record = config.optional<std::string>(
+      section + ".record", "", {.meaning = "file of the record of this test, if there are several records"});
   std::vector<std::string> known = {"kind", "record"};
   if (e.kind != Kind::open_circuit) {
-    e.time = config.require<double>(section + ".time", {-kLatest, kLatest, "s"});
+    e.time = config.require<double>(section + ".time", {-kLatest, kLatest, "s", "time of the test"});
     known.emplace_back("time");
   }
   if (!e.opens_breaker()) {
-    e.size = config.require<double>(section + ".size", {-kLargestStep, kLargestStep, "pu"});
+    e.size =
+        config.require<double>(section + ".size", {-kLargestStep, kLargestStep, "pu", "size of the step"});
     known.insert(known.end(), {"size", "until"});
     if (config.has(section + ".until"))
-      e.until = config.require<double>(section + ".until", {-kLatest, kLatest, "s"});
+      e.until = config.require<double>(section + ".until",
+                                       {-kLatest, kLatest, "s", "end of the step; missing: it stays"});
     if (config.sound() && !(e.until > e.time))
       config.problem(section + ".until", fmt::format("until = {:g} s with time = {:g} s", e.until, e.time),
                      "the end of a step is after its beginning",
