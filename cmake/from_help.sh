@@ -78,11 +78,17 @@ options_of() {
     END { if (option != "") write_option() }' "$out/help/$1"
 }
 
+# words_of COMMAND: "<command>\t<words>" if its first argument is one of several words: "KIND TEXT:{x,y}".
+words_of() {
+  sed -n '/^Positionals:/,/^$/s/^  [A-Za-z]* TEXT:{\([^}]*\)}.*/\1/p' "$out/help/$1" | head -n 1 | tr ',' ' ' | sed "s/^/$1\t/"
+}
+
 see_also=
 while IFS=$'\t' read -r command summary; do
   "$bin/swingbank-$command" --help >"$out/help/$command" </dev/null
   page "swingbank-$command" "$command" "$summary" '.BR swingbank (1)'
   options_of "$command" >>"$out/options"
+  words_of "$command" >>"$out/words"
   see_also+=".BR swingbank-$command (1)"$'\n'
 done < <(commands)
 page swingbank all "power-plant model validation at scale" "$see_also"
@@ -102,6 +108,7 @@ with_template() {
   echo ')'
   echo 'declare -gA _swingbank_choices=('
   awk -F'\t' '$4 != "-" { printf "  [\047%s %s\047]=\047%s\047\n", $1, $2, $4 }' "$out/options"
+  awk -F'\t' '{ printf "  [\047%s %s\047]=\047%s\047\n", $1, $1, $2 }' "$out/words" # behind the command itself
   echo ')'
 } | with_template swingbank.bash
 
@@ -115,9 +122,11 @@ quote="'"
   echo '# Prints the options of a command for _arguments.'
   printf '_swingbank_options() {\n  case $1 in\n'
   awk -F'\t' '
+    FILENAME == ARGV[1] { words[$1] = $2; next }
     $1 != last {
       printf "%s    %s)\n      cat <<\047OPTIONS\047\n", last == "" ? "" : "OPTIONS\n      ;;\n", $1
       last = $1
+      if ($1 in words) printf "1:word:(%s)\n", words[$1]
     }
     {
       meaning = $5
@@ -125,12 +134,13 @@ quote="'"
       action = $4 != "-" ? "(" $4 ")" : $3 == "TEXT" ? "_files" : " "
       printf "*%s[%s]%s\n", $2, meaning, $3 == "-" ? "" : ":" tolower($3) ":" action
     }
-    END { print "OPTIONS\n      ;;" }' "$out/options"
+    END { print "OPTIONS\n      ;;" }' "$out/words" "$out/options"
   printf '  esac\n}\n'
 } | with_template _swingbank
 
 {
   echo "# fish completion of swingbank $version, made from what its commands say to --help."
+  awk -F'\t' '{ printf "complete -c swingbank -n \047__swingbank_words %s\047 -x -a \047%s\047\n", $1, $2 }' "$out/words"
   { commands; cat "$out/options"; } | awk -F'\t' '
     function quoted(text) { gsub(/[\\\047]/, "\\\\&", text); return "\047" text "\047" }
     NF == 2 {
@@ -144,4 +154,4 @@ quote="'"
       printf "complete -c swingbank -n \047__swingbank_words %s\047 %s%s -d %s\n", $1, name, value, quoted($5)
     }'
 } | with_template swingbank.fish
-rm -r "$out/help" "$out/more" "$out/options"
+rm -r "$out/help" "$out/more" "$out/options" "$out/words"
