@@ -104,6 +104,7 @@ for shell in bash zsh fish; do
   cmp <(completed swingbank compare --component plant --) "$work/options" || fail "$shell takes a value for a command"
   [[ $(completed swingbank comp) == compare ]] || fail "$shell does not complete comp"
   [[ $(completed swingbank help comp) == compare ]] || fail "$shell does not complete help comp"
+  [[ $(completed swingbank schema pl) == plant ]] || fail "$shell does not complete schema pl"
   [[ $(completed swingbank compare --drive "" | xargs) == "pq voltage" ]] || fail "$shell does not complete --drive"
   [[ -z $(completed swingbank compare --threads "") ]] || [[ $shell == bash ]] || fail "$shell completes a number"
   file=$(completed swingbank compare --model ${model%.toml})

@@ -219,7 +219,7 @@ TEST_F(PlantModelTest, RecognisesDataOnTheSystemBase) {
                      HasSubstr("set base_mva to the machine's own, say 10000"))));
   EXPECT_THAT(
       load(replaced(example_text(), "H = 6.54", "H = 654")).warnings,
-      ElementsAre(AllOf(HasSubstr("H = 654 s"), HasSubstr("usually 0.1 to 20 s"), HasSubstr("toml:22"))))
+      ElementsAre(AllOf(HasSubstr("H = 654 s"), HasSubstr("usually 0.1 to 20 s"), HasSubstr("toml:23"))))
       << "one slip is no other base";
   // A smaller factor suffices for unusual values: unit 34 of a public IEEE 39-bus case, on 1000 MVA.
   EXPECT_THAT(
@@ -228,7 +228,7 @@ TEST_F(PlantModelTest, RecognisesDataOnTheSystemBase) {
   EXPECT_TRUE(load(on_system(example_text(), "2.6", "3.2")).warnings.empty());
   // Within the bounds there is only a warning.
   const PlantModel m = load(on_system(example_text(), "19", "0.45"));
-  EXPECT_THAT(m.warnings, Contains(AllOf(HasSubstr("H = 19 s"), HasSubstr("toml:22"))));
+  EXPECT_THAT(m.warnings, Contains(AllOf(HasSubstr("H = 19 s"), HasSubstr("toml:23"))));
   EXPECT_TRUE(load(example_text()).warnings.empty());
 }
 TEST_F(PlantModelTest, WarnsOfUnusualValuesAndKeepsThem) {
@@ -246,7 +246,7 @@ TEST_F(PlantModelTest, WarnsOfUnusualValuesAndKeepsThem) {
 TEST_F(PlantModelTest, WarnsOfViolatedOrderings) {
   const PlantModel m = load(replaced(example_text(), "Xd = 1.8", "Xd = 0.35"));
   EXPECT_THAT(m.warnings,
-              ElementsAre(AllOf(HasSubstr("Xd = 0.35 pu is not above X'd = 0.4 pu"), HasSubstr(".toml:24"))));
+              ElementsAre(AllOf(HasSubstr("Xd = 0.35 pu is not above X'd = 0.4 pu"), HasSubstr(".toml:25"))));
 }
 TEST_F(PlantModelTest, BiasedModelKeepsTheSubmittedValues) {
   const PlantModel before = load(example_text());

@@ -1,0 +1,12 @@
+// swingbank schema-experiment: JSON Schema of experiments, which `swingbank schema` asks for.
+#include <fmt/format.h>
+
+#include "jobs/command_line.hpp"
+#include "jobs/commands.hpp"
+#include "train/loop/experiment.hpp"
+
+int swingbank::jobs::schema_experiment_command(CommandLine& line, int argc, char** argv) {
+  if (!line.parse(argc, argv)) return line.end();
+  fmt::print("{}", train::loop::experiment_schema());
+  return 0;
+}
