@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Generates man pages and completion for bash, zsh and fish from the programs' --help: none is maintained by hand.
-#   bash cmake/from_help.sh BIN VERSION OUT     writes OUT/man1/*.1, OUT/{swingbank.bash,_swingbank,swingbank.fish}
+# Generates man pages and completion for bash, zsh and fish from the programs' --help, and the JSON Schemas of files:
+# none is maintained by hand.
+#   bash cmake/from_help.sh BIN VERSION OUT     writes OUT/man1/*.1, OUT/{swingbank.bash,_swingbank,swingbank.fish}, OUT/schema/*.json
 set -euo pipefail
 bin=$1 version=$2 out=$3
 
@@ -155,3 +156,5 @@ quote="'"
     }'
 } | with_template swingbank.fish
 rm -r "$out/help" "$out/more" "$out/options" "$out/words"
+
+"$bin/swingbank" schema --out "$out/schema"

@@ -5,8 +5,8 @@
 #include "base/own_command.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "mpi/draw/dataset_config.hpp"
+#include "validate/benchmark/test_set.hpp"
 #include "validate/event/point.hpp"
 #include "validate/fleet/fleet_file.hpp"
 #include "validate/plant/plant_model.hpp"
@@ -14,6 +14,7 @@
 #include "validate/system/system.hpp"
 #include "validate/thresholds/acceptance.hpp"
 
+namespace swingbank::jobs::schema_command {
 namespace {
 using namespace swingbank;
 
@@ -39,6 +40,8 @@ constexpr Kind kKinds[] = {
     {"fleet", "many plants with their records (diagnose --fleet)", validate::fleet::fleet_schema},
     {"system", "grid, event and records of several terminals (compare --system)",
      validate::system::system_schema},
+    {"benchmark", "tests of one model against another (benchmark --tests)",
+     validate::benchmark::tests_schema},
     {"dataset", "distribution of a dataset (databank, generate)", mpi::draw::dataset_schema},
     {"experiment", "training of networks (train, cross-validate)", experiment_schema},
 };
@@ -73,7 +76,7 @@ int run(const std::string& wanted, const std::filesystem::path& out) {
 }
 }  // namespace
 
-int swingbank::jobs::schema_command(CommandLine& line, int argc, char** argv) {
+int run(CommandLine& line, int argc, char** argv) {
   line.describe(
       "Prints the JSON Schema of a kind of file, for completion and checks in an editor; without a KIND, the list of "
       "kinds.");
@@ -90,3 +93,5 @@ int swingbank::jobs::schema_command(CommandLine& line, int argc, char** argv) {
     return 1;
   }
 }
+
+}  // namespace swingbank::jobs::schema_command

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include "jobs/command_line.hpp"
-#include "jobs/commands.hpp"
 #include "train/loop/experiment.hpp"
 
-int swingbank::jobs::schema_experiment_command(CommandLine& line, int argc, char** argv) {
+namespace swingbank::jobs::schema_experiment_command {
+int run(CommandLine& line, int argc, char** argv) {
   if (!line.parse(argc, argv)) return line.end();
   fmt::print("{}", train::loop::experiment_schema());
   return 0;
 }
+
+}  // namespace swingbank::jobs::schema_experiment_command

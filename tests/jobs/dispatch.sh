@@ -50,4 +50,7 @@ needs swingbank ''
 needs swingbank_commands hdf5_serial
 needs swingbank-read-hdf5 hdf5_serial
 needs swingbank_datasets 'hdf5_openmpi mpi'
-if [[ -e $SWINGBANK_BIN/swingbank_learning ]]; then needs swingbank_learning 'hdf5_serial torch'; fi
+if [[ -e $SWINGBANK_BIN/swingbank_learning ]]; then
+  needs swingbank_learning 'hdf5_serial torch'
+  needs swingbank_learning_ranks 'hdf5_openmpi hdf5_serial mpi torch' # Debian's LibTorch loads the serial HDF5, and calls neither
+fi

@@ -43,6 +43,7 @@ BASES = {
     "accept": configs / "accept/example.toml",
     "system": configs / "systems/ieee14_fault_at_5.toml",
     "point": configs / "plants/point.toml",
+    "benchmark": configs / "benchmark/synchronous.toml",
     "records": record,
 }
 BASES["point"].write_text(f"""[collector]
@@ -64,6 +65,7 @@ COMMANDS = {
     "accept": compare + ["--accept"],
     "system": ["compare", "--out", str(configs / "out"), "--system"],
     "point": compare + ["--point"],
+    "benchmark": ["benchmark", "--model", str(model), "--against", str(model), "--out", str(configs / "out"), "--tests"],
     "records": ["compare", "--model", str(model), "--out", str(configs / "out"), "--record"],
 }
 END = None  # in place of a text: the mutation is added at the end
@@ -134,6 +136,14 @@ MUTATIONS = {
         ("raw = ", "colour = 1\nraw = ", "system.colour"),
         ("base_mva = 100.0", 'base_mva = "100"', "record.base_mva"),
         (END, "[compare]\ntolerance = 1.0\n", "compare.tolerance"),
+    ],
+    "benchmark": [
+        ('kind = "voltage_dip"', 'kind = "voltage_drop"', "kind"),
+        ('kind = "voltage_dip"', 'kind = "voltage_dip"\ncolour = 1', "colour"),
+        ("event = 1.0", 'event = "1"', "event"),
+        ("event = 1.0", "# ", "event"),
+        ("rate = ", "rate = 1.0 # ", "operating_point.rate"),
+        ("name = ", "# ", "name"),
     ],
     "point": [
         ("r_pu = 0.002", "r_pu = -1.0", "collector.r_pu"),

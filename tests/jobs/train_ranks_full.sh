@@ -43,7 +43,7 @@ for killed in 0 1; do
     [[ ! -s $work/$out/checkpoints/V-mlp-quick-seed1.checkpoint ]] || break
     sleep 0.05
   done
-  for pid in $(pgrep -f "swingbank_learning.*--out $work/$out|swingbank-train.*--out $work/$out"); do
+  for pid in $(pgrep -f "swingbank-train-ranks.*--out $work/$out"); do
     if grep -qz "^OMPI_COMM_WORLD_RANK=$killed\$" "/proc/$pid/environ" 2>/dev/null; then kill -9 "$pid"; fi
   done
   ! wait %+ || fail "rank $killed was not killed: $(cat "$work/log")"

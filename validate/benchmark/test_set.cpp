@@ -10,6 +10,7 @@
 #include <set>
 
 #include "base/config.hpp"
+#include "base/describe.hpp"
 
 namespace swingbank::validate::benchmark {
 namespace {
@@ -45,7 +46,7 @@ bool is_name(const std::string& name) {
 
 std::optional<Interval> window(Config& c, const std::string& key) {
   if (!c.has(key)) return std::nullopt;
-  return c.interval(key, {-kLatest, kLatest, "s"});
+  return c.interval(key, {-kLatest, kLatest, "s", "window of the errors, [from, to] in the record's time"});
 }
 
 void check_size(Config& c, const std::string& at, const Test& t) {
@@ -83,24 +84,29 @@ Test read_test(Config& c, int index) {
   const std::string at = fmt::format("test[{}].", index);
   Test t;
   t.where = c.where(fmt::format("test[{}]", index));
-  t.name = c.require<std::string>(at + "name");
+  t.name = c.require<std::string>(at + "name", {.meaning = "letters, digits, - and _"});
   if (c.has(at + "name") && !is_name(t.name))
     c.problem(at + "name", "name '" + t.name + "'", "records and curves are named after it",
               "use letters, digits, - and _ only");
   std::vector<std::string> names;
   for (const KindRecord& k : kKinds) names.emplace_back(k.name);
-  const std::string kind = c.choice(at + "kind", names);
+  const std::string kind = c.choice(at + "kind", names, Range{.meaning = "disturbance of the test"});
   const auto found = std::ranges::find(names, kind);
   if (found == names.end()) return t;
   t.kind = static_cast<TestKind>(found - names.begin());
   const KindRecord& of = record_of(t.kind);
-  t.event = c.require<double>(at + "event", {-kLatest, kLatest, "s"});
-  if (c.has(at + "end")) t.end = c.require<double>(at + "end", {-kLatest, kLatest, "s"});
-  if (c.has(at + "size")) t.size = c.require<double>(at + "size", {-of.most, of.most, std::string(of.unit)});
+  t.event = c.require<double>(at + "event", {-kLatest, kLatest, "s", "beginning of the disturbance"});
+  if (c.has(at + "end"))
+    t.end = c.require<double>(at + "end", {-kLatest, kLatest, "s", "end of the disturbance"});
+  if (c.has(at + "size"))
+    t.size =
+        c.require<double>(at + "size", {-of.most, of.most, std::string(of.unit), "change, with its sign"});
   t.pre = window(c, at + "pre");
   t.during = window(c, at + "during");
   t.post = window(c, at + "post");
-  t.record = c.optional<std::string>(at + "record", "");
+  t.record = c.optional<std::string>(
+      at + "record", "",
+      {.meaning = "file of --records, or path beside this file (default: the test's name)"});
   for (const auto& key : c.keys(fmt::format("test[{}]", index)))
     if (!std::ranges::count(kKeys, key))
       c.problem(at + key, "unknown key " + key, "a test has no such key",
@@ -113,17 +119,17 @@ Test read_test(Config& c, int index) {
 TestSet read_set(Config& c) {
   TestSet set;
   set.file = c.name();
-  set.name = c.require<std::string>("name");
-  set.source = c.optional<std::string>("source", "");
+  set.name = c.require<std::string>("name", {.meaning = "name of the set"});
+  set.source = c.optional<std::string>("source", "", {.meaning = "where the tests come from"});
   if (c.has("operating_point")) {
     InitialPoint p;
-    p.P = c.require<double>("operating_point.P", {-2, 2, "pu of MVA"});
-    p.Q = c.require<double>("operating_point.Q", {-2, 2, "pu of MVA"});
-    p.V = c.require<double>("operating_point.V", {0.1, 2, "pu"});
-    p.rate = c.require<double>("operating_point.rate", {30, kFastest, "samples per second"});
+    p.P = c.require<double>("operating_point.P", {-2, 2, "pu of MVA", "active power out of the plant"});
+    p.Q = c.require<double>("operating_point.Q", {-2, 2, "pu of MVA", "reactive power out of the plant"});
+    p.V = c.require<double>("operating_point.V", {0.1, 2, "pu", "voltage"});
+    p.rate = c.require<double>("operating_point.rate", {30, kFastest, "1/s", "samples of a generated input"});
     set.initial = p;
   }
-  c.ignore("test");  // its keys are checked in read_test
+  if (c.has("test")) c.ignore("test");  // its keys are checked in read_test
   if (c.has("test") && !c.is_array("test"))
     c.problem("test", "one [test]", "a set may have several", "write [[test]]");
   std::set<std::string> names;
@@ -169,6 +175,10 @@ bool is_reference_step(TestKind kind) { return kind >= TestKind::v_reference_ste
 TestSet load_tests(const fs::path& file) {
   Config c(file);
   return read_set(c);
+}
+
+std::string tests_schema() {
+  return describe_keys("Tests of a benchmark of Swingbank", [](Config& c) { read_set(c); });
 }
 
 TestSet parse_tests(const std::string& text, const fs::path& name) {

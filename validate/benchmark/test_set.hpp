@@ -63,6 +63,8 @@ struct TestSet {
 
 /// Reads a tests file. Throws InputError with all its problems.
 TestSet load_tests(const std::filesystem::path& file);
+/// Returns the JSON Schema of a tests file (base/describe.hpp).
+std::string tests_schema();
 /// Parses a tests file; `name` is the file in messages.
 TestSet parse_tests(const std::string& text, const std::filesystem::path& name);
 
