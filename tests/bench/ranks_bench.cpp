@@ -1,7 +1,7 @@
 // A training step on the ranks of mpirun, each with one thread, against one process with as many threads, in
 // alternation; and the efficiency of more machines by the measured step and a network's latency and
 // bandwidth.
-//   mpirun -np 2 bench_ranks [NETWORK] [SAMPLES] [BATCH] [ROUNDS] [GBIT_PER_S] [LATENCY_US]
+//   mpirun -np 2 --bind-to none bench_ranks [NETWORK] [SAMPLES] [BATCH] [ROUNDS] [GBIT_PER_S] [LATENCY_US]
 #include <ATen/ATen.h>
 #include <ATen/Parallel.h>
 #include <fmt/format.h>
