@@ -57,6 +57,9 @@ void KeyTree::touch(int pass) {
 
 void KeyTree::add(const KeyTrace& pass) {
   ++pass_;
+  std::set<KeyPath> present;
+  for (const KeyDecision& decision : pass.decisions)
+    if (decision.values.empty() && decision.outcome == 0) present.insert(decision.path);
   for (const KeyTrace::Key& key : pass.keys) {
     KeyTree* node = this;
     std::vector<KeyTree*> way;
@@ -73,14 +76,15 @@ void KeyTree::add(const KeyTrace& pass) {
     else if (!key.form.otherwise.is_null() && key.form.otherwise != same->otherwise)
       same->varies = true;
     if (!key.required) continue;
-    // A table with a required key is required too, unless it has any name or number.
+    // A table with a required key is required too, unless it has any name or number. A key that is read
+    // because it is present requires no table.
     for (std::size_t k = way.size(); k-- > 0 && !is_any(key.path[k]);) {
       if (way[k]->last_needed_ != pass_) ++way[k]->needed_;
       way[k]->last_needed_ = pass_;
+      if (present.contains(key.path)) break;
     }
   }
-  for (const KeyDecision& decision : pass.decisions)
-    if (decision.values.empty() && decision.outcome == 0) at(decision.path).asked_for_ = true;
+  for (const KeyPath& path : present) at(path).asked_for_ = true;
   for (const KeyTrace::Table& table : pass.tables) {
     KeyTree& node = at(table.path);
     if (node.branch_.words.empty()) node.branch_ = table;

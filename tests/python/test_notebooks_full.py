@@ -1,6 +1,8 @@
 """Notebooks of the gallery: each runs from its first to its last cell, in the folder of the example configs."""
 import importlib.util
+import json
 import os
+import re
 import unittest
 
 import nbclient
@@ -25,8 +27,10 @@ class Notebooks(unittest.TestCase):
         self.assertIn("<svg", self.views(self.run_notebook("play_in.ipynb"))[0])
 
     def test_what_is_missing(self):
-        views = self.views(self.run_notebook("what_is_missing.ipynb"))
-        self.assertIn("SEXS", views[1])
+        notebook = self.run_notebook("what_is_missing.ipynb")
+        self.assertIn("SEXS", self.views(notebook)[1])
+        before, after = re.search(r"unseen event: ([0-9.]+) -> ([0-9.]+) Mvar", json.dumps(notebook)).groups()
+        self.assertLess(float(after), 0.05 * float(before))
 
     def test_fleet(self):
         self.run_notebook("fleet.ipynb")
