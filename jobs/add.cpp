@@ -19,8 +19,7 @@
 namespace swingbank::jobs::add_command {
 namespace {
 
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 
 constexpr const char *kModel = "model.toml", *kDyr = "model.dyr", *kPage = "report.html",
                      *kResult = "add.json", *kRetrained = "retrain.json";

@@ -18,8 +18,7 @@
 namespace swingbank::jobs::benchmark_command {
 namespace {
 
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 
 constexpr const char *kPage = "report.html", *kResult = "benchmark.json", *kTable = "benchmark.csv";
 

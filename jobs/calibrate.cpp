@@ -22,8 +22,7 @@
 namespace swingbank::jobs::calibrate_command {
 namespace {
 
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 
 constexpr const char *kModel = "model.toml", *kBiasedModel = "model-not-adequate.toml", *kDyr = "model.dyr",
                      *kCurveFit = "curve-fit.toml", *kPage = "report.html", *kResult = "calibrate.json";

@@ -14,8 +14,7 @@
 namespace swingbank::jobs::compare_command {
 namespace {
 
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 
 constexpr const char *kPage = "report.html", *kResult = "compare.json",
                      *kInterrupted = "compare-interrupted.json";

@@ -7,7 +7,6 @@
 
 namespace swingbank::jobs::cross_validate_command {
 namespace {
-using namespace swingbank;
 
 std::vector<std::int32_t> folds_of(const std::string& text, const train::loop::Experiment& experiment,
                                    const char* option = "--fold") {

@@ -16,7 +16,6 @@
 
 namespace swingbank::jobs::databank_command {
 namespace {
-using namespace swingbank;
 namespace fs = std::filesystem;
 
 void write_csv(const fs::path& file, const mpi::draw::Databank& bank, const mpi::draw::DatasetConfig& c) {

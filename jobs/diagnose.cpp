@@ -20,8 +20,7 @@
 namespace swingbank::jobs::diagnose_command {
 namespace {
 
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 
 constexpr const char *kPage = "report.html", *kResult = "diagnosis.json";
 

@@ -17,8 +17,7 @@
 
 namespace swingbank::jobs::effects_command {
 namespace {
-using namespace swingbank;
-using namespace swingbank::sim;
+using namespace sim;
 using Json = nlohmann::ordered_json;
 
 std::string_view slot_meaning(Slot slot) {

@@ -10,8 +10,7 @@
 namespace swingbank::jobs::export_command {
 namespace {
 
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 
 struct Arguments {
   std::string plant, format = "dyr", id, bus_name;

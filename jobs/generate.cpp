@@ -25,7 +25,6 @@
 
 namespace swingbank::jobs::generate_command {
 namespace {
-using namespace swingbank;
 
 struct Command {
   std::string config, part, again;

@@ -14,7 +14,6 @@
 namespace swingbank::jobs::inventory_command {
 namespace {
 
-using namespace swingbank;
 using Json = nlohmann::ordered_json;
 using sim::grid::Inventory;
 using sim::grid::ModelCount;

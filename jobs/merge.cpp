@@ -16,7 +16,6 @@
 
 namespace swingbank::jobs::merge_command {
 namespace {
-using namespace swingbank;
 namespace store = mpi::store;
 
 int run(const std::vector<std::string>& from, const std::string& into, Progress::Mode mode) {

@@ -11,8 +11,7 @@
 namespace swingbank::jobs::plant_command {
 namespace {
 
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 
 struct Arguments {
   sim::grid::UnitChoice unit;

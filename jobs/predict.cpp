@@ -16,8 +16,7 @@
 
 namespace swingbank::jobs::predict_command {
 namespace {
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 using nlohmann::ordered_json;
 
 struct Options {

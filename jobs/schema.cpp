@@ -16,7 +16,6 @@
 
 namespace swingbank::jobs::schema_command {
 namespace {
-using namespace swingbank;
 
 /// Returns the schema of experiments from the program that reads them, because it links LibTorch.
 std::string experiment_schema() {

@@ -20,8 +20,7 @@
 namespace swingbank::jobs::serve_command {
 namespace {
 
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 using nlohmann::json;
 
 struct Command {

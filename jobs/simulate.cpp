@@ -26,8 +26,7 @@
 
 namespace swingbank::jobs::simulate_command {
 namespace {
-using namespace swingbank;
-using namespace swingbank::sim;
+using namespace sim;
 
 struct Options {
   std::string raw, dyr, convention = "psse", integrator = "reference";
@@ -498,5 +497,4 @@ int run(CommandLine& line, int argc, char** argv) {
     return 1;
   }
 }
-
 }  // namespace swingbank::jobs::simulate_command

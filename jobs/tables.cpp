@@ -12,8 +12,7 @@
 namespace swingbank::jobs::tables_command {
 namespace {
 
-using namespace swingbank;
-using namespace swingbank::validate;
+using namespace validate;
 
 report::Provenance sources(const std::vector<report::RunResult>& results, int argc, char** argv) {
   std::string line = "swingbank tables";

@@ -11,9 +11,8 @@
 namespace swingbank::jobs {
 
 /// Declares the options, checks the request and calls `work` with both. Returns the exit code.
-inline int train_main(
-    CommandLine& line, int argc, char** argv,
-    const std::function<int(const TrainingOptions&, train::run::RunRequest&)>& work) {
+inline int train_main(CommandLine& line, int argc, char** argv,
+                      const std::function<int(const TrainingOptions&, train::run::RunRequest&)>& work) {
   TrainingOptions options;
   line.add_flag("--watch", options.watch, "draw the learning curve on the terminal, after each epoch");
   const auto check = [&](const train::run::RunRequest& request) {

@@ -15,7 +15,6 @@
 
 namespace swingbank::jobs::verify_command {
 namespace {
-using namespace swingbank;
 namespace store = mpi::store;
 
 void require_whole(const std::string& folder, const store::DatasetHeader& header, int processes,

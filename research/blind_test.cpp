@@ -22,9 +22,8 @@
 
 namespace swingbank::research::blind_test_command {
 namespace {
-using namespace swingbank;
 using namespace swingbank::research;
-using namespace swingbank::validate;
+using namespace validate;
 namespace fs = std::filesystem;
 
 struct Options {

@@ -17,7 +17,6 @@
 namespace swingbank::research::night_plan_command {
 namespace {
 
-using namespace swingbank;
 using namespace swingbank::jobs;
 using namespace swingbank::research;
 
