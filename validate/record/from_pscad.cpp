@@ -64,7 +64,7 @@ std::optional<double> fortran_number(std::string_view cell) {
   }
   const auto [stop, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (stop != text.data() + text.size() || text.empty()) return std::nullopt;
-  if (fault == std::errc::result_out_of_range) return 0.0;  // below 1e-308
+  if (fault == std::errc::result_out_of_range && text.find("E-") != std::string::npos) return 0.0;
   return fault == std::errc{} ? std::optional(value) : std::nullopt;
 }
 

@@ -123,6 +123,16 @@ TEST_F(RecordPscadTest, FortranNumbers) {
   EXPECT_NEAR(r.Q[9], 0, 1e-9);
 }
 
+TEST_F(RecordPscadTest, RefusesAnOverflow) {
+  write_case();
+  std::string text = "\n";
+  for (int k = 0; k < kRows; ++k)
+    text += fmt::format("{:.8f} 60.0 80.0 {}\n", k / 60.0, k == 9 ? "0.2000000000E+400" : "20.0");
+  write("case_02.out", text);
+  EXPECT_THAT(complaints(),
+              ElementsAre(AllOf(HasSubstr("Q = '0.2000000000E+400'"), HasSubstr("case_02.out:11"))));
+}
+
 TEST_F(RecordPscadTest, RefusesMissingPart) {
   write_case();
   std::filesystem::remove(folder_ / "case_02.out");
