@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,12 @@ int guarded(const std::string& command, F action) {
     return kSubmitAgain;
   } catch (const InputError& error) {
     fmt::print(stderr, "{}", problems_text(error));
+  } catch (const std::bad_alloc&) {
+    fmt::print(
+        stderr,
+        "no memory at swingbank {} (this machine or the limit of its process is too small for the input): use "
+        "shorter or fewer records, or lower rates\n",
+        command);
   } catch (const std::exception& error) {
     fmt::print(stderr, "swingbank {}: {}\n", command, error.what());
   }
