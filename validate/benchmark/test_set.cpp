@@ -36,8 +36,8 @@ const KindRecord& record_of(TestKind kind) { return kKinds.at(static_cast<std::s
 
 constexpr std::array<std::string_view, 9> kKeys = {"name", "kind", "record", "event", "end",
                                                    "size", "pre",  "during", "post"};
-constexpr double kLatest = 1e5;   ///< [s]
-constexpr double kFastest = 1e5;  ///< samples per second
+constexpr double kLatest = 1e5;         ///< [s]
+constexpr double kMostGenerated = 1e6;  ///< samples of a generated input
 
 bool is_name(const std::string& name) {
   return !name.empty() && name.size() <= 100 &&
@@ -126,7 +126,8 @@ TestSet read_set(Config& c) {
     p.P = c.require<double>("operating_point.P", {-2, 2, "pu of MVA", "active power out of the plant"});
     p.Q = c.require<double>("operating_point.Q", {-2, 2, "pu of MVA", "reactive power out of the plant"});
     p.V = c.require<double>("operating_point.V", {0.1, 2, "pu", "voltage"});
-    p.rate = c.require<double>("operating_point.rate", {30, kFastest, "1/s", "samples of a generated input"});
+    p.rate = c.require<double>("operating_point.rate",
+                               {.low = 30, .unit = "1/s", .meaning = "samples of a generated input"});
     set.initial = p;
   }
   if (c.has("test")) c.ignore("test");  // its keys are checked in read_test
@@ -210,6 +211,13 @@ void find_records(TestSet& set, const std::vector<std::string>& given, bool gene
                    "it has no record, so that its input is generated",
                    t.size ? "add post = [from, to] in s: the input ends with it"
                           : fmt::format("add size = … [{}]", size_unit(t.kind)));
+    } else if (const double samples = t.post->second * set.initial->rate; !(samples <= kMostGenerated)) {
+      problems.add(
+          fmt::format("{:.3g} samples of test '{}'", samples, t.name), t.where,
+          fmt::format("its input is generated from 0 s to the end of post, with {:g} samples per second "
+                      "and at most {:g} samples",
+                      set.initial->rate, kMostGenerated),
+          "lower rate in [operating_point], or let the event begin earlier");
     }
   }
   for (const std::string& file : given)

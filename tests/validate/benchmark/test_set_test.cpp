@@ -133,5 +133,16 @@ TEST(BenchmarkGeneratedInputTest, DipAndRamp) {
   EXPECT_EQ(r.V[300], 1.0);
 }
 
+TEST(BenchmarkTestSetTest, LimitsTheSamplesOfAGeneratedInput) {
+  std::string text = kDip;
+  text.replace(text.find("rate = 200"), 10, "rate = 2e5");
+  TestSet set = parse_tests(text, "set.toml");
+  EXPECT_THAT(missing(set, {}, true), IsEmpty());  // 5 s
+  set.tests.front().post->second = 5.1;
+  EXPECT_THAT(
+      missing(set, {}, true),
+      ElementsAre(AllOf(HasSubstr("1.02e+06 samples of test 'dip' at set.toml"), HasSubstr("lower rate"))));
+}
+
 }  // namespace
 }  // namespace swingbank::validate::benchmark
