@@ -80,29 +80,21 @@ std::vector<char> outside_windows(const Record& r, const std::vector<compare::Wi
   return out;
 }
 
-/// Name, unit, units in 1 pu, and nominal value [pu] of a channel.
-struct ChannelSpec {
-  std::string name, unit;
-  double scale, size;
-};
-ChannelSpec spec_of(playin::Output output, const record::RecordBase& base, double per_machine) {
+compare::ChannelRule rule_of(playin::Output output, const record::RecordBase& base, double per_machine) {
   const compare::ChannelUnit unit = compare::channel_unit(output, base);
   const bool power = output == playin::Output::P || output == playin::Output::Q;
-  return {std::string(playin::output_name(output)), unit.name, unit.scale, power ? per_machine : 1.0};
+  return {.name = std::string(playin::output_name(output)),
+          .unit = unit.name,
+          .scale = unit.scale,
+          .floor = 0,
+          .starts_at_mean = false,
+          .size = power ? per_machine : 1.0};
 }
 
-compare::ChannelComparison channel_of(const ChannelSpec& spec, const std::vector<double>& reference,
+compare::ChannelComparison channel_of(const compare::ChannelRule& rule, const std::vector<double>& reference,
                                       const std::vector<double>& modelled,
                                       const compare::EventComparison& e) {
-  compare::ChannelComparison c;
-  c.name = spec.name;
-  c.unit = spec.unit;
-  c.scale = spec.scale;
-  c.size = spec.size;
-  c.measured = reference;
-  c.modelled = modelled;
-  c.residual.resize(reference.size());
-  std::ranges::transform(modelled, reference, c.residual.begin(), std::minus<>());
+  compare::ChannelComparison c = compare::channel_curves(rule, reference, modelled);
   const auto before = compare::window_error(e.record.t, c.residual, e.left_out, e.windows.front(), true, 0);
   c.noise = std::sqrt(std::max(0.0, before.rms * before.rms - before.mean * before.mean));
   c.whole = compare::window_error(e.record.t, c.residual, e.left_out,
@@ -126,9 +118,10 @@ void add_currents(compare::EventComparison& e, double per_machine) {
   for (std::size_t c = 0; c < powers; ++c) {
     const std::string name = e.channels[c].name;
     if (name != "P" && name != "Q") continue;
-    e.channels.push_back(channel_of({name == "P" ? "Ip" : "Iq", "pu", 1, 1},
-                                    current_of(e.channels[c].measured, e.record, per_machine),
-                                    current_of(e.channels[c].modelled, e.record, per_machine), e));
+    e.channels.push_back(channel_of(
+        {.name = name == "P" ? "Ip" : "Iq", .unit = "pu", .scale = 1, .floor = 0, .starts_at_mean = false},
+        current_of(e.channels[c].measured, e.record, per_machine),
+        current_of(e.channels[c].modelled, e.record, per_machine), e));
   }
 }
 
@@ -159,7 +152,7 @@ TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& give
   const auto outputs = in.against ? std::vector{playin::Output::P, playin::Output::Q}
                                   : playin::compared_outputs(e.record, true);
   for (const playin::Output o : outputs)
-    e.channels.push_back(channel_of(spec_of(o, e.record.base, per_machine),
+    e.channels.push_back(channel_of(rule_of(o, e.record.base, per_machine),
                                     in.against ? output_of(other, o) : playin::measured_values(e.record, o),
                                     output_of(e.playback, o), e));
   if (in.model.plant.machine.effect->converter) add_currents(e, per_machine);

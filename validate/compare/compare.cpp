@@ -259,18 +259,24 @@ WindowError window_error(const std::vector<double>& t, const std::vector<double>
   return e;
 }
 
-ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<double>& measured,
-                                  const std::vector<double>& modelled, const EventComparison& event) {
+ChannelComparison channel_curves(const ChannelRule& rule, const std::vector<double>& measured,
+                                 const std::vector<double>& modelled) {
   ChannelComparison c;
-  c.name = channel.name;
-  c.unit = channel.unit;
-  c.scale = channel.scale;
-  c.judged = channel.judged;
-  c.size = channel.size;
+  c.name = rule.name;
+  c.unit = rule.unit;
+  c.scale = rule.scale;
+  c.judged = rule.judged;
+  c.size = rule.size;
   c.measured = measured;
   c.modelled = modelled;
   c.residual.resize(measured.size());
   std::ranges::transform(modelled, measured, c.residual.begin(), std::minus<>());
+  return c;
+}
+
+ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<double>& measured,
+                                  const std::vector<double>& modelled, const EventComparison& event) {
+  ChannelComparison c = channel_curves(channel, measured, modelled);
   const int quiet = event.playback.start.samples;
   c.noise = standard_deviation(c.residual, quiet);
   const auto& t = event.record.t;

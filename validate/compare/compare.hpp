@@ -98,6 +98,9 @@ struct ChannelRule {
 /// standard deviation of the noise [pu].
 WindowError window_error(const std::vector<double>& t, const std::vector<double>& residual,
                          const std::vector<char>& left_out, const Window& window, bool first, double noise);
+/// Returns a channel with its curves and their difference, and no errors.
+ChannelComparison channel_curves(const ChannelRule& rule, const std::vector<double>& measured,
+                                 const std::vector<double>& modelled);
 /// Computes residual, window errors and error map of one channel. Record, windows and playback.start of
 /// `event` must be set; the noise is that of the first playback.start.samples residuals.
 ChannelComparison compare_channel(const ChannelRule& rule, const std::vector<double>& measured,
