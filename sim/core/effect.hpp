@@ -27,6 +27,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -77,6 +78,18 @@ constexpr bool is_of_converter(Slot slot) {
 /// Whether a plant may have several effects in this slot: those whose outputs add.
 constexpr bool is_shared(Slot slot) {
   return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
+}
+/// Returns the slot of the only control that reads the outputs of a control in `slot`; none if the machine or
+/// several controls read them.
+constexpr std::optional<Slot> reader_of(Slot slot) {
+  switch (slot) {
+    case Slot::compensator:
+    case Slot::stabiliser:
+    case Slot::limiter:
+      return Slot::exciter;
+    default:
+      return std::nullopt;
+  }
 }
 
 /// Null value of a parameter that has none.

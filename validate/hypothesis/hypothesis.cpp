@@ -62,6 +62,15 @@ bool occupied(const sim::plant::Plant& plant, const sim::Effect& effect) {
   return false;
 }
 
+/// Returns whether a control reads the outputs of an effect that is added to `plant`: a stabiliser has no
+/// influence without an exciter.
+bool is_read(const sim::plant::Plant& plant, const sim::Effect& effect) {
+  const auto reader = sim::reader_of(effect.slot);
+  return !reader || std::ranges::any_of(plant.controls, [&](const sim::plant::Block& b) {
+           return b.effect->slot == *reader;
+         });
+}
+
 /// Sets the free parameters and start values of an instrument. Its errors are small, and the response is
 /// linear in them.
 void start_near_null(Hypothesis& h, int block) {
@@ -121,7 +130,7 @@ void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::E
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
     const bool tried = !sim::library::variant_of(*effect);  // a variant is covered by its main effect
     if (!fits || !tried || effect->switching_times || occupied(tested.plant, *effect)) continue;
-    if (!playin::belongs_to(component, effect->slot)) continue;
+    if (!playin::belongs_to(component, effect->slot) || !is_read(tested.plant, *effect)) continue;
     if (!sim::slot_conflict(*tested.plant.machine.effect, *effect).empty()) continue;
     if (instrument && !(playin::can_be_taken_back(*effect) && playin::touches_phasors(*effect))) continue;
     all.push_back(added_to(tested, *effect));

@@ -35,9 +35,9 @@ struct Hypothesis {
 };
 
 /// Returns every hypothesis that the library allows for the plant; the hypotheses refer to the library's
-/// effects. Some may have no influence (a stabiliser without an exciter), which only a trial shows. Effects
-/// that act at given times are specific to one event and are left out. For a component, only effects of this
-/// component are returned.
+/// effects. Effects whose output nothing reads (a stabiliser without an exciter) and effects that act at given
+/// times, which are specific to one event, are left out. For a component, only effects of this component are
+/// returned.
 std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
                                        const sim::library::EffectLibrary& library,
                                        record::Component component = record::Component::plant);

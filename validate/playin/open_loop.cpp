@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/problem.hpp"
 #include "sim/plant/equations.hpp"
@@ -54,9 +55,14 @@ constexpr Transformed kFormula;
 /// Controls of up to eight plants in a SIMD batch.
 class BlockBatch {
  public:
+  /// `lengths`: lengths of the steps [s], without repetitions; it must outlive the object.
   BlockBatch(Made made, std::span<const sim::plant::Plant> plants, const Seen& start,
-             const sim::Conventions& conventions)
-      : made_(made), equations_(plants.front()), ifd_(start.Ifd) {
+             const sim::Conventions& conventions, const std::vector<double>& lengths)
+      : made_(made),
+        equations_(plants.front()),
+        ifd_(start.Ifd),
+        lengths_(lengths),
+        triangles_(lengths.size()) {
     const double P = (start.V * std::conj(start.I)).real(), Q = (start.V * std::conj(start.I)).imag();
     scratch_.resize(static_cast<std::size_t>(equations_.scratch()));
     for (std::size_t lane = 0; lane < plants.size(); ++lane) {
@@ -108,37 +114,61 @@ class BlockBatch {
     response_ = made_ == Made::field ? s.Efd : s.Tm;
   }
   void evaluate(const Seen& at) { evaluate(at, x_, dx_); }
-  /// Takes one step from the last point of evaluate(); `seen` are the inputs of the stages after the first.
-  void step(double h, std::span<const Seen, kFormulaStages - 1> seen) {
-    const std::size_t n = x_.size();
-    const std::vector<P8>& triangles = triangles_for(h);
-    for (std::size_t stage = 0; stage < kFormulaStages; ++stage) {
-      if (stage > 0) {
-        trial_ = x_;
-        for (std::size_t j = 0; j < stage; ++j) add(trial_, kFormula.a[stage][j], u_[j]);
-        clip(trial_);
-        evaluate(seen[stage - 1], trial_, dx_);
-      }
-      std::vector<P8>& u = u_[stage];
-      u = dx_;
-      for (std::size_t j = 0; j < stage; ++j) add(u, -kFormula.inverse[stage][j] / h, u_[j]);
-      for (std::size_t i = 0; i < n; ++i)
-        for (const std::size_t j : left_[i]) u[i] = u[i] - triangles[i * n + j] * u[j];
-      for (std::size_t i = n; i-- > 0;) {
-        for (const std::size_t j : right_[i]) u[i] = u[i] - triangles[i * n + j] * u[j];
-        u[i] = u[i] * triangles[i * n + i];
-      }
-    }
+  /// Takes a step of the length with number `length` in `lengths`, from the last point of evaluate(); `seen`
+  /// are the inputs of the stages after the first.
+  void step(std::size_t length, std::span<const Seen, kFormulaStages - 1> seen) {
+    const double per_h = 1 / lengths_[length];
+    const Triangles& triangles = triangles_for(length);
+    take_stages(seen, per_h, triangles, std::make_index_sequence<kFormulaStages>());
     // the formula is stiffly accurate: its weights are those of the last stage, and one for its own u
-    for (std::size_t j = 0; j + 1 < kFormulaStages; ++j) add(x_, kFormula.a.back()[j], u_[j]);
-    add(x_, 1.0, u_.back());
+    for (std::size_t i = 0; i < x_.size(); ++i)
+      x_[i] = weighted<kFormulaStages - 1>(x_[i], i, kFormula.a.back()) + u_.back()[i];
     clip(x_);
   }
 
  private:
-  static void add(std::vector<P8>& to, double factor, const std::vector<P8>& from) {
-    if (factor == 0.0) return;
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] = to[i] + P8(factor) * from[i];
+  /// Triangular factors of one step length; entries in the order of `left_` and `right_`.
+  struct Triangles {
+    std::vector<P8> left, right, reciprocal;  ///< below, above and reciprocal of the diagonal
+  };
+  /// Columns of the non-zero entries of all rows, row by row.
+  struct Entries {
+    std::vector<std::size_t> columns, ends;  ///< columns; end of each row
+  };
+
+  /// Returns value + sum of weights[j] u_[j][i] over the first `count` stages.
+  template <std::size_t count>
+  [[nodiscard]] P8 weighted(P8 value, std::size_t i, const std::array<double, kFormulaStages>& weights,
+                            double factor = 1.0) const {
+    for (std::size_t j = 0; j < count; ++j)
+      if (weights[j] != 0.0) value = value + P8(factor * weights[j]) * u_[j][i];
+    return value;
+  }
+  template <std::size_t... stages>
+  void take_stages(std::span<const Seen, kFormulaStages - 1> seen, double per_h, const Triangles& triangles,
+                   std::index_sequence<stages...>) {
+    (take_stage<stages>(seen, per_h, triangles), ...);
+  }
+  template <std::size_t stage>
+  void take_stage(std::span<const Seen, kFormulaStages - 1> seen, double per_h, const Triangles& triangles) {
+    const std::size_t n = x_.size();
+    if constexpr (stage > 0) {
+      for (std::size_t i = 0; i < n; ++i) trial_[i] = weighted<stage>(x_[i], i, kFormula.a[stage]);
+      clip(trial_);
+      evaluate(seen[stage - 1], trial_, dx_);
+    }
+    P8* u = u_[stage].data();
+    for (std::size_t i = 0, k = 0; i < n; ++i) {
+      P8 value = weighted<stage>(dx_[i], i, kFormula.inverse[stage], -per_h);
+      for (; k < left_.ends[i]; ++k) value = value - triangles.left[k] * u[left_.columns[k]];
+      u[i] = value;
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      P8 value = u[i];
+      for (std::size_t k = i > 0 ? right_.ends[i - 1] : 0; k < right_.ends[i]; ++k)
+        value = value - triangles.right[k] * u[right_.columns[k]];
+      u[i] = value * triangles.reciprocal[i];
+    }
   }
   void clip(std::vector<P8>& x) {
     P8 moved(0.0);
@@ -159,51 +189,59 @@ class BlockBatch {
       for (std::size_t i = 0; i < n; ++i) jacobian_[i * n + j] = (moved[i] - dx_[i]) * P8(1 / kRateMove);
     }
   }
-  /// Returns the LU factors of 1 / (gamma h) - Jacobian, with the reciprocal diagonal. Controls are chains of
-  /// lags, so few entries are non-zero. Pivots are large, because the lags' own rates are negative.
-  const std::vector<P8>& triangles_for(double h) {
-    for (const auto& [known, triangles] : triangles_)
-      if (known == h) return triangles;
+  /// Returns the LU factors of 1 / (gamma h) - Jacobian. Controls are chains of lags, so few entries are
+  /// non-zero. Pivots are large, because the lags' own rates are negative.
+  const Triangles& triangles_for(std::size_t length) {
+    Triangles& triangles = triangles_[length];
     const std::size_t n = x_.size();
+    if (triangles.reciprocal.size() == n) return triangles;
     std::vector<P8> all(n * n);
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j)
-        all[i * n + j] = P8(i == j ? 1 / (kGamma * h) : 0.0) - jacobian_[i * n + j];
+        all[i * n + j] = P8(i == j ? 1 / (kGamma * lengths_[length]) : 0.0) - jacobian_[i * n + j];
     for (std::size_t k = 0; k < n; ++k) {
       all[k * n + k] = P8(1.0) / all[k * n + k];
       for (std::size_t i = k + 1; i < n; ++i) {
-        if (std::ranges::count(left_[i], k) == 0) continue;
+        if (!there_[i * n + k]) continue;
         const P8 factor = all[i * n + k] = all[i * n + k] * all[k * n + k];
-        for (const std::size_t j : right_[k]) all[i * n + j] = all[i * n + j] - factor * all[k * n + j];
+        for (std::size_t j = k + 1; j < n; ++j)
+          if (there_[k * n + j]) all[i * n + j] = all[i * n + j] - factor * all[k * n + j];
       }
     }
-    return triangles_.emplace_back(h, std::move(all)).second;
+    for (std::size_t i = 0; i < n; ++i) {
+      triangles.reciprocal.push_back(all[i * n + i]);
+      for (std::size_t j = 0; j < n; ++j)
+        if (j != i && there_[i * n + j]) (j < i ? triangles.left : triangles.right).push_back(all[i * n + j]);
+    }
+    return triangles;
   }
-  /// Finds the columns of non-zero entries left and right of the diagonal, including the fill-in of the
-  /// elimination.
+  /// Finds the non-zero entries left and right of the diagonal, including the fill-in of the elimination.
   void find_entries() {
     const std::size_t n = x_.size();
-    std::vector<char> there(n * n);
+    there_.resize(n * n);
     for (std::size_t i = 0; i < n * n; ++i)
-      there[i] = any_positive(jacobian_[i]) || any_positive(-jacobian_[i]);
+      there_[i] = any_positive(jacobian_[i]) || any_positive(-jacobian_[i]);
     for (std::size_t k = 0; k < n; ++k)
       for (std::size_t i = k + 1; i < n; ++i)
-        for (std::size_t j = k + 1; there[i * n + k] && j < n; ++j)
-          there[i * n + j] = there[i * n + j] || there[k * n + j];
-    left_.resize(n);
-    right_.resize(n);
-    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = k + 1; there_[i * n + k] && j < n; ++j)
+          there_[i * n + j] = there_[i * n + j] || there_[k * n + j];
+    for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j)
-        if (i != j && there[i * n + j]) (j < i ? left_ : right_)[i].push_back(j);
+        if (i != j && there_[i * n + j]) (j < i ? left_ : right_).columns.push_back(j);
+      left_.ends.push_back(left_.columns.size());
+      right_.ends.push_back(right_.columns.size());
+    }
   }
 
   Made made_;
   sim::plant::PlantEquations<P8> equations_;
   double ifd_, efd_ = 0, tm_ = 0;
   std::vector<P8> c_, x_, dx_, trial_, scratch_, jacobian_;
-  std::vector<std::vector<std::size_t>> left_, right_;
+  std::vector<char> there_;  ///< whether an entry of the LU factors is non-zero
+  Entries left_, right_;     ///< those below and above the diagonal
   std::array<std::vector<P8>, kFormulaStages> u_;
-  std::vector<std::pair<double, std::vector<P8>>> triangles_;  ///< LU factors for each step length [s]
+  const std::vector<double>& lengths_;  ///< step lengths [s]
+  std::vector<Triangles> triangles_;    ///< LU factors for each step length, empty until needed
   std::array<char, kBlockLanes> initialised_{};
   P8 response_{0.0};
   sim::Signals<P8> signals_;  ///< unwritten signals remain zero
@@ -240,6 +278,9 @@ OpenLoop::OpenLoop(SeenAlong run, const std::vector<double>& times, const sim::C
     const TimePoint &a = times_[k], &b = times_[k + 1];
     const double h = a.segment == b.segment ? rounded(b.t - a.t) : 0.0;
     Step& step = steps_.emplace_back(Step{.h = h, .begin = between(a.segment, a.t)});
+    const auto known = std::ranges::find(lengths_, h);
+    step.length = static_cast<std::size_t>(known - lengths_.begin());
+    if (h > 0 && known == lengths_.end()) lengths_.push_back(h);
     for (std::size_t stage = 1; h > 0 && stage < kFormulaStages; ++stage)
       step.stages[stage - 1] = between(a.segment, a.t + kFormula.at[stage] * h);
   }
@@ -273,7 +314,7 @@ Eigen::MatrixXd OpenLoop::run(Made made, std::span<const sim::plant::Plant> plan
                                                   std::numeric_limits<double>::quiet_NaN());
   for (std::size_t first = 0; first < plants.size(); first += kBlockLanes) {
     const auto some = plants.subspan(first, std::min(kBlockLanes, plants.size() - first));
-    BlockBatch controls(made, some, steady_, conventions_);
+    BlockBatch controls(made, some, steady_, conventions_, lengths_);
     if (!controls.any()) continue;
     const auto keep = [&](std::size_t k) {
       for (std::size_t lane = 0; lane < some.size(); ++lane)
@@ -284,7 +325,7 @@ Eigen::MatrixXd OpenLoop::run(Made made, std::span<const sim::plant::Plant> plan
     for (std::size_t k = 0; k < steps_.size(); ++k) {
       controls.evaluate(steps_[k].begin);
       keep(k);
-      if (steps_[k].h > 0) controls.step(steps_[k].h, steps_[k].stages);
+      if (steps_[k].h > 0) controls.step(steps_[k].length, steps_[k].stages);
     }
     controls.evaluate(between(times_.back().segment, times_.back().t));
     keep(steps_.size());

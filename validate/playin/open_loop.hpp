@@ -39,6 +39,7 @@ class OpenLoop {
   struct Step {
     double h;  ///< to the next time point [s]; 0: across a switching time
     Seen begin;
+    std::size_t length = 0;           ///< number of h in `lengths_`, if h > 0
     std::array<Seen, 3> stages = {};  ///< inputs at the formula's stages after the first
   };
   [[nodiscard]] Seen between(int segment, double t) const;
@@ -48,7 +49,8 @@ class OpenLoop {
   std::vector<std::size_t> first_of_;  ///< first entry of each segment in `seen_`, then the end
   sim::Conventions conventions_;
   std::vector<TimePoint> times_;
-  std::vector<Step> steps_;  ///< from each time point but the last
+  std::vector<Step> steps_;      ///< from each time point but the last
+  std::vector<double> lengths_;  ///< different lengths of the steps [s]
 };
 
 }  // namespace swingbank::validate::playin

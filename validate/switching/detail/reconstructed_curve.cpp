@@ -35,44 +35,36 @@ const Eigen::Matrix4d& bends() {
 ReconstructedCurve::ReconstructedCurve(const FilteredSamples& stretch, const FilterWindow& window,
                                        const std::vector<double>& switching_times, double roughness) {
   set_segments(stretch, window, switching_times);
-  const Eigen::MatrixXd A = averages(stretch, window), before = prior(roughness);
-  // weights of real part, imaginary part and their product: the noise has components along and across the
-  // phasor
-  const auto samples = static_cast<Eigen::Index>(stretch.t.size());
-  Eigen::MatrixXd measured(samples, 2);
-  Eigen::ArrayXd re(samples), im(samples), both(samples);
+  const Eigen::MatrixXd A = averages(stretch, window);
+  const Eigen::Index samples = A.rows();
+  // The covariance of the samples, [real parts, imaginary parts], is smaller than the precision of the
+  // coefficients. Noise has components along and across the phasor.
+  Eigen::MatrixXd roots(count_, samples), covariance = Eigen::MatrixXd::Zero(2 * samples, 2 * samples);
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> priors;
+  for (const Segment& s : segments_) {
+    priors.emplace_back(prior(s, roughness));
+    const Eigen::Index size = s.spans + 3;
+    roots.middleRows(s.first, size) = priors.back().matrixL().solve(A.middleCols(s.first, size).transpose());
+  }
+  covariance.topLeftCorner(samples, samples).selfadjointView<Eigen::Lower>().rankUpdate(roots.transpose());
+  covariance.bottomRightCorner(samples, samples) = covariance.topLeftCorner(samples, samples);
+  Eigen::VectorXd measured(2 * samples);
   for (Eigen::Index k = 0; k < samples; ++k) {
     const Complex v = stretch.v[static_cast<std::size_t>(k)], u = v == 0.0 ? 1.0 : v / std::abs(v);
-    const double along = 1 / square(stretch.magnitude),
-                 across = 1 / square(std::abs(v) * stretch.angle + stretch.magnitude);
-    measured.row(k) << v.real(), v.imag();
-    re[k] = along * square(u.real()) + across * square(u.imag());
-    im[k] = along * square(u.imag()) + across * square(u.real());
-    both[k] = (along - across) * u.real() * u.imag();
+    const double along = square(stretch.magnitude),
+                 across = square(std::abs(v) * stretch.angle + stretch.magnitude);
+    measured[k] = v.real();
+    measured[samples + k] = v.imag();
+    covariance(k, k) += along * square(u.real()) + across * square(u.imag());
+    covariance(samples + k, samples + k) += along * square(u.imag()) + across * square(u.real());
+    covariance(samples + k, k) = (along - across) * u.real() * u.imag();
   }
-  const auto curvature = [&](const Eigen::ArrayXd& w) -> Eigen::MatrixXd {
-    return A.transpose() * w.matrix().asDiagonal() * A;
-  };
-  const auto weighed = [&](const Eigen::MatrixXd& values) -> Eigen::MatrixXd {
-    Eigen::MatrixXd out(samples, 2);
-    out << (re * values.col(0).array() + both * values.col(1).array()).matrix(),
-        (both * values.col(0).array() + im * values.col(1).array()).matrix();
-    return out;
-  };
-  Eigen::MatrixXd precision(2 * count_, 2 * count_);
-  precision.topLeftCorner(count_, count_) = before + curvature(re);
-  precision.bottomRightCorner(count_, count_) = before + curvature(im);
-  precision.bottomLeftCorner(count_, count_) = curvature(both);
-  const Eigen::LLT<Eigen::MatrixXd> known(precision);  // uses the lower half
-  coefficients_ = A.transpose() * weighed(measured);
-  coefficients_.reshaped() = known.solve(Eigen::VectorXd(coefficients_.reshaped()));
-  const Eigen::MatrixXd left = measured - A * coefficients_;
-  const double missed = left.cwiseProduct(weighed(left)).sum();
-  const double unlikely = (coefficients_.transpose() * before * coefficients_).trace();
-  const auto log_root = [](const Eigen::LLT<Eigen::MatrixXd>& L) {
-    return L.matrixLLT().diagonal().array().log().sum();
-  };
-  evidence_ = -0.5 * (missed + unlikely) + 2 * log_root(before.llt()) - log_root(known);
+  const Eigen::LLT<Eigen::MatrixXd> root(covariance);  // uses the lower half
+  const Eigen::VectorXd weighed = root.solve(measured);
+  evidence_ = -0.5 * measured.dot(weighed) - root.matrixLLT().diagonal().array().log().sum();
+  coefficients_ = roots * weighed.reshaped(samples, 2);
+  for (std::size_t i = 0; i < segments_.size(); ++i)
+    priors[i].matrixU().solveInPlace(coefficients_.middleRows(segments_[i].first, segments_[i].spans + 3));
 }
 
 void ReconstructedCurve::set_segments(const FilteredSamples& stretch, const FilterWindow& window,
@@ -125,11 +117,10 @@ Eigen::MatrixXd ReconstructedCurve::averages(const FilteredSamples& stretch,
   return A;
 }
 
-Eigen::MatrixXd ReconstructedCurve::prior(double roughness) const {
-  Eigen::MatrixXd P = Eigen::MatrixXd::Identity(count_, count_) / (kAnyVoltage * kAnyVoltage);
-  for (const Segment& s : segments_)
-    for (int span = 0; span < s.spans; ++span)
-      P.block<4, 4>(s.first + span, s.first + span) += bends() / (roughness * s.span * s.span * s.span);
+Eigen::MatrixXd ReconstructedCurve::prior(const Segment& s, double roughness) {
+  Eigen::MatrixXd P = Eigen::MatrixXd::Identity(s.spans + 3, s.spans + 3) / (kAnyVoltage * kAnyVoltage);
+  for (int span = 0; span < s.spans; ++span)
+    P.block<4, 4>(span, span) += bends() / (roughness * s.span * s.span * s.span);
   return P;
 }
 

@@ -40,7 +40,8 @@ class ReconstructedCurve {
   void set_segments(const FilteredSamples& stretch, const FilterWindow& window,
                     const std::vector<double>& switching_times);
   [[nodiscard]] Eigen::MatrixXd averages(const FilteredSamples& stretch, const FilterWindow& window) const;
-  [[nodiscard]] Eigen::MatrixXd prior(double roughness) const;
+  /// Returns the prior precision of a segment's coefficients.
+  [[nodiscard]] static Eigen::MatrixXd prior(const Segment& s, double roughness);
   std::vector<Segment> segments_;
   int count_ = 0;
   Eigen::MatrixXd coefficients_;  // [coefficient][real, imaginary]
