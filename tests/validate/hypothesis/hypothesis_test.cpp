@@ -60,7 +60,10 @@ TEST(Hypotheses, RatioOfAddedTransformerIsFreeWithinItsTaps) {
 TEST(Hypotheses, FreesInactivePartsInGroups) {
   std::map<std::string, std::vector<std::string>> names;
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
-  for (const Hypothesis& h : all_hypotheses(model.under_test(), model.library)) {
+  auto all = all_hypotheses(model.under_test(), model.library);
+  const plant::PlantModel excited = fit::ExciterExample(0.2).model;  // its only control is SEXS
+  std::ranges::copy(all_hypotheses(excited.under_test(), excited.library), std::back_inserter(all));
+  for (const Hypothesis& h : all) {
     for (const Hypothesis& with : with_left_off(h, h.plant)) {
       EXPECT_TRUE(h.added) << with.name;
       names[h.name].push_back(with.name);
@@ -78,6 +81,17 @@ TEST(Hypotheses, FreesInactivePartsInGroups) {
   EXPECT_FALSE(names.contains("SEXS"));
   EXPECT_FALSE(names.contains("CTERROR"));
   EXPECT_FALSE(names.contains("GENROU:S10,S12"));
+}
+/// Without an exciter no control reads the output of a compensator, stabiliser or limiter.
+TEST(Hypotheses, LeaveOutEffectsThatNothingReads) {
+  plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  const auto tried = [&](std::string_view name) {
+    return std::ranges::count(all_hypotheses(model.under_test(), model.library), name, &Hypothesis::name);
+  };
+  for (const auto name : {"IEEEVC", "IEEEST", "MAXEX2"}) EXPECT_EQ(tried(name), 0) << name;
+  const sim::Effect* sexs = model.library.find("SEXS");
+  model.plant.controls.push_back({sexs, sexs->default_parameters()});
+  for (const auto name : {"IEEEVC", "IEEEST", "MAXEX2"}) EXPECT_EQ(tried(name), 1) << name;
 }
 TEST(Hypotheses, ReplacementIsAloneInItsSlot) {
   const plant::PlantModel model = fit::ExciterExample(0.2).model;  // its only control is SEXS
