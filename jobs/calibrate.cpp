@@ -52,7 +52,7 @@ std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantMod
   interruption_point();
   compare::CompareOptions options = a.of.comparing();
   options.progress = a.options.progress;
-  const auto shown = a.of.compared(records);
+  const auto shown = compare::measurements(a.of.compared(records), options, before.plant.mva);
   return {compare::play_and_judge("submitted", before, shown, options, a.of.judging.by),
           compare::play_and_judge("calibrated", after, shown, options, a.of.judging.by)};
 }

@@ -38,6 +38,7 @@ std::shared_ptr<live::Setup> read_setup(Command& c) {
   s->records = c.of.compared(std::move(set.records));
   s->warnings = std::move(set.warnings);
   s->compare = c.of.comparing();
+  s->measured = compare::measurements(s->records, s->compare, s->model.plant.mva);
   s->events = c.of.events();
   s->by = c.of.judging.by;
   s->prior_sd = c.of.prior_sd;

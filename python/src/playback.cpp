@@ -196,7 +196,8 @@ std::shared_ptr<Comparison> compare_all(const std::shared_ptr<const Plant>& plan
   const auto samples = samples_of(records, asked.power_only);
   return without_lock([&] {
     const auto by = thresholds::read_acceptance(accept);
-    compare::Played played = compare::play_and_judge("model", *plant, samples, options, by);
+    compare::Played played = compare::play_and_judge(
+        "model", *plant, compare::measurements(samples, options, plant->plant.mva), options, by);
     if (played.events.empty())
       throw InputError({"the model cannot follow the records", plant->origin, played.fitness.not_judged,
                         "correct the model's parameters or the record"});

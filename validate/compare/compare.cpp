@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/constants.hpp"
 #include "validate/compare/detail/fitted.hpp"
 #include "validate/compare/detail/power_doubt.hpp"
 #include "validate/compare/detail/standard_deviation.hpp"
 #include "validate/compare/event_title.hpp"
+#include "validate/compare/measurement.hpp"
 #include "validate/noise/pre_event.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/given.hpp"
@@ -362,11 +362,15 @@ ChannelUnit channel_unit(playin::Output output, const record::RecordBase& base) 
 }
 
 EventComparison compare_event(const plant::PlantModel& model, record::Record record,
+                              const CompareOptions& options) {
+  return compare_event(model, Measurement(std::move(record), options, model.plant.mva), options);
+}
+
+EventComparison compare_event(const plant::PlantModel& model, const Measurement& measurement,
                               const CompareOptions& asked) {
   EventComparison e;
   CompareOptions options = asked;
-  e.record =
-      record::stretch(std::move(record), -std::numeric_limits<double>::infinity(), options.play_in.until);
+  e.record = measurement.record();
   e.left_out = e.record.lost;
   const auto step = [&](const char* what, int done) {
     if (options.progress)
@@ -376,9 +380,7 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
       e.record.angle == record::AngleSource::none && !playin::is_part(e.record) && !e.record.breaker();
   if (no_angle) options.input = PlaybackInput::power;
   e.detected = e.record.switched.empty();
-  const switching::StepShape step_shape = options.step_shape == switching::StepShape::either
-                                              ? switching::step_shape_of({e.record}, options.step_threshold)
-                                              : options.step_shape;
+  const switching::StepShape step_shape = measurement.step_shape();
   std::string failed;
   const auto fitted_with = [&](const noise::WhitenedEvents& events, Fitted how) {
     EventComparison other = e;
@@ -388,10 +390,8 @@ EventComparison compare_event(const plant::PlantModel& model, record::Record rec
   };
   // the start is fitted only if residuals are then within noise; an incomplete model would bias it
   const auto fitted = [&] {
-    const auto events = noise::whitened_events(model, {e.record},
-                                               {.step_threshold = options.step_threshold,
-                                                .pre_event = options.play_in.pre_event,
-                                                .step_shape = step_shape});
+    const auto events = noise::with_noise(
+        model, event::prepare_events(model, {measurement.switched()}, measurement.preparation()));
     for (const Fitted how : {Fitted::in_white_noise, Fitted::in_slow_noise}) {
       if (how == Fitted::in_slow_noise && playin::is_part(e.record)) continue;
       if (EventComparison other = fitted_with(events, how); explained(other)) return other;

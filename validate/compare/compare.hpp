@@ -59,6 +59,8 @@ struct EventComparison {
   std::vector<std::string> notes;  ///< notes for the reader: uncertain switching times, drift, unread columns
 };
 
+class Measurement;
+
 /// Options of a comparison.
 struct CompareOptions {
   PlaybackInput input = PlaybackInput::voltage;       ///< inputs of the playback
@@ -120,6 +122,9 @@ std::vector<Window> event_windows(const record::Record& record,
 /// Plays the record into the model and computes the residuals. With P and Q played in, no network fixes the
 /// angle, so a constant error of P from a noisy pre-event becomes a ramp of frequency. Frequency and speed
 /// are then shown, not judged. Throws InputError: the model cannot follow the record, or its parts throw.
+EventComparison compare_event(const plant::PlantModel& model, const Measurement& measurement,
+                              const CompareOptions& options);
+/// As above, for a record that is compared with one model.
 EventComparison compare_event(const plant::PlantModel& model, record::Record record,
                               const CompareOptions& options = {});
 

@@ -11,19 +11,18 @@
 namespace swingbank::validate::compare {
 
 Played play_and_judge(std::string name, const plant::PlantModel& model,
-                      const std::vector<record::Record>& records, CompareOptions options,
+                      const std::vector<Measurement>& records, CompareOptions options,
                       const thresholds::Acceptance& by) {
   Played played{std::move(name), {}, {}};
   const double mva = model.plant.mva;
   try {
-    options.step_shape = switching::step_shape_of(records, options.step_threshold);
     const event::Progress progress = std::exchange(options.progress, {});
     const int total = static_cast<int>(records.size());
     std::vector<EventComparison> events(records.size());
     in_parallel(
         records.size(), [&](std::size_t k) { events[k] = compare_event(model, records[k], options); },
         [&](int done, std::size_t k) {
-          if (progress) progress(event::Phase::playing, records[k].name, done, total);
+          if (progress) progress(event::Phase::playing, records[k].record().name, done, total);
         });
     played.events = std::move(events);
     judge(played.events);  // sets the bounds of the maps

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "validate/compare/fitness.hpp"
+#include "validate/compare/measurement.hpp"
 
 namespace swingbank::validate::compare {
 
@@ -19,7 +20,7 @@ struct Played {
 /// Plays the records into the model and judges its fitness. If the model cannot follow a record, `events` is
 /// empty and `fitness` is not judged and holds the reason.
 Played play_and_judge(std::string name, const plant::PlantModel& model,
-                      const std::vector<record::Record>& records, CompareOptions options,
+                      const std::vector<Measurement>& records, CompareOptions options,
                       const thresholds::Acceptance& by);
 
 /// Returns the events of the first model that follows them; empty if none does.

@@ -277,12 +277,13 @@ std::vector<compare::Played> play_models(const plant::PlantModel& model, const D
   for (const auto& e : d.events) records.push_back(e.record);
   if (std::ranges::all_of(d.events, [](const event::FitEvent& e) { return e.channels.size() <= 2; }))
     records = compare::power_only(std::move(records));
+  const auto measured = compare::measurements(records, options, model.plant.mva);
   const auto play = [&](const std::string& name, const sim::plant::Plant& plant,
                         const sim::Conventions& conventions) {
     plant::PlantModel other = model;
     other.plant = plant;
     other.conventions = conventions;
-    return compare::play_and_judge(name, other, records, options, by);
+    return compare::play_and_judge(name, other, measured, options, by);
   };
   std::vector<compare::Played> played = {play("submitted", model.plant, model.conventions)};
   const hypothesis::Judgement* best =

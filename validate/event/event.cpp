@@ -60,15 +60,20 @@ std::vector<char> left_out(const FitEvent& e) {
 
 }  // namespace
 
-std::vector<FitEvent> prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
-                                     const FitEventOptions& options) {
+std::vector<switching::SwitchedRecord> reconstructed_records(std::vector<record::Record> records,
+                                                             const FitEventOptions& options) {
   for (const record::Record& r : records)
     if (!playin::is_part(r) && !r.breaker()) record::require_angle(r);
-  std::vector<switching::SwitchedRecord> switched = switching::switched_records(
-      std::move(records), detection(options, options.mva > 0 ? options.mva : model.plant.mva));
+  auto switched = switching::switched_records(std::move(records), detection(options, options.mva));
   switching::reconstruct_voltage(switched);
+  return switched;
+}
+
+std::vector<FitEvent> prepare_events(const plant::PlantModel& model,
+                                     std::vector<switching::SwitchedRecord> records,
+                                     const FitEventOptions& options) {
   std::vector<FitEvent> events;
-  for (switching::SwitchedRecord& r : switched) events.push_back({std::move(r)});
+  for (switching::SwitchedRecord& r : records) events.push_back({std::move(r)});
   for (FitEvent& e : events) {
     set_start(e, options);
     e.left_out = left_out(e);
@@ -76,6 +81,13 @@ std::vector<FitEvent> prepare_events(const plant::PlantModel& model, std::vector
     if (!options.start) find_turns(model.under_test(), e);
   }
   return events;
+}
+
+std::vector<FitEvent> prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
+                                     const FitEventOptions& options) {
+  FitEventOptions of_plant = options;
+  if (!(of_plant.mva > 0)) of_plant.mva = model.plant.mva;
+  return prepare_events(model, reconstructed_records(std::move(records), of_plant), options);
 }
 
 int samples_before_event(const record::Record& record, const FitEventOptions& options) {

@@ -27,6 +27,15 @@ struct FitEventOptions {
 /// InputError if a record has no pre-event window.
 std::vector<FitEvent> prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
                                      const FitEventOptions& options = {});
+/// The part of the preparation that does not depend on the model's parameters: records with switching times
+/// and reconstructed voltage. `options.mva` is required if an angle was integrated. Throws InputError if a
+/// record has no angle.
+std::vector<switching::SwitchedRecord> reconstructed_records(std::vector<record::Record> records,
+                                                             const FitEventOptions& options);
+/// The rest of the preparation. Throws as prepare_events().
+std::vector<FitEvent> prepare_events(const plant::PlantModel& model,
+                                     std::vector<switching::SwitchedRecord> records,
+                                     const FitEventOptions& options);
 
 /// Returns the number of samples in steady state before the first switching, as in prepare_events(), without
 /// a model. `options.mva` is required if the angle was integrated. Throws InputError if there are none.

@@ -17,7 +17,7 @@ std::shared_ptr<const compare::Played> played(const Setup& setup, const plant::P
   options.fit_switchings = fit_switchings;
   if (setup.threads > 0) omp_set_num_threads(setup.threads);  // of this thread
   auto p = std::make_shared<compare::Played>(
-      compare::play_and_judge("model", model, setup.records, options, setup.by));
+      compare::play_and_judge("model", model, setup.measured, options, setup.by));
   if (p->events.empty())
     throw InputError({"the model cannot follow the records", model.origin, p->fitness.not_judged,
                       "return to the values before"});

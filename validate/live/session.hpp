@@ -19,6 +19,7 @@ namespace swingbank::validate::live {
 struct Setup {
   plant::PlantModel model;                         ///< submitted model
   std::vector<record::Record> records;             ///< one for each event
+  std::vector<compare::Measurement> measured;      ///< of `records`, with the options `compare`
   std::vector<std::vector<std::string>> warnings;  ///< notes on each record
   compare::CompareOptions compare;                 ///< options of the comparison
   event::FitEventOptions events;                   ///< preparation of the records for fits

@@ -55,11 +55,14 @@ NoiseModel noise_through(const sim::plant::PlantUnderTest& tested, const Events&
 
 }  // namespace
 
-WhitenedEvents whitened_events(const plant::PlantModel& model, std::vector<record::Record> records,
-                               const event::FitEventOptions& options) {
-  std::vector<event::FitEvent> events = event::prepare_events(model, std::move(records), options);
+WhitenedEvents with_noise(const plant::PlantModel& model, std::vector<event::FitEvent> events) {
   NoiseModel noise = noise_through(model.under_test(), events);
   return {std::move(events), std::move(noise)};
+}
+
+WhitenedEvents whitened_events(const plant::PlantModel& model, std::vector<record::Record> records,
+                               const event::FitEventOptions& options) {
+  return with_noise(model, event::prepare_events(model, std::move(records), options));
 }
 
 NoiseModel measure_noise(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events) {

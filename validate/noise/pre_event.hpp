@@ -15,6 +15,9 @@ namespace swingbank::validate::noise {
 WhitenedEvents whitened_events(const plant::PlantModel& model, std::vector<record::Record> records,
                                const event::FitEventOptions& options = {});
 
+/// Returns prepared events with their noise, as whitened_events().
+WhitenedEvents with_noise(const plant::PlantModel& model, std::vector<event::FitEvent> events);
+
 /// Estimates the noise again with another model of the plant; the noise is white. An error of a fifth in a
 /// reactance causes an error of a fifth in the noise.
 NoiseModel measure_noise(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events);

@@ -21,6 +21,7 @@ std::shared_ptr<const Setup> example() {
     s->model = plant::load_plant_model(source + "/configs/plants/ieee14_bus2.toml");
     auto set = check::read_records({source + "/configs/records/record-example/avr_ev4.csv"}, s->model);
     s->records = compare::power_only(std::move(set.records));
+    s->measured = compare::measurements(s->records, s->compare, s->model.plant.mva);
     s->warnings = std::move(set.warnings);
     s->by = thresholds::read_acceptance("");
     s->prior_sd = 0.3;
