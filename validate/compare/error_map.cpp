@@ -58,18 +58,29 @@ class Cosines {
     for (std::size_t i = 0; i < 4 * n; ++i)
       table_[i] = std::cos(constants::pi * static_cast<double>(i) / (2.0 * static_cast<double>(n)));
   }
-  /// Returns the coefficients of the discrete cosine transform: a Fourier transform of the samples with even
-  /// indices ascending, then odd indices descending (Makhoul 1980).
-  [[nodiscard]] std::vector<double> coefficients(std::span<const double> x) {
-    if (n_ == 1) return {x[0]};  // kissfft reads past the end of one sample
+  /// Returns the coefficients of the discrete cosine transforms of all series: a Fourier transform of the
+  /// samples with even indices ascending, then odd indices descending (Makhoul 1980), of two series at once.
+  [[nodiscard]] std::vector<std::vector<double>> coefficients(
+      const std::vector<std::span<const double>>& series) {
+    std::vector<std::vector<double>> all(series.size(), std::vector<double>(n_));
     std::vector<std::complex<double>> folded(n_), modes;
-    for (std::size_t i = 0; i < n_; ++i) folded[i % 2 == 0 ? i / 2 : n_ - 1 - i / 2] = x[i];
-    fft_.fwd(modes, folded);
-    std::vector<double> c(n_);
-    for (std::size_t k = 0; k < n_; ++k)
-      c[k] = (modes[k].real() * table_[k] + modes[k].imag() * sine(k)) *
-             std::sqrt((k == 0 ? 1.0 : 2.0) / static_cast<double>(n_));
-    return c;
+    for (std::size_t s = 0; s < series.size(); s += 2) {
+      const bool pair = s + 1 < series.size();
+      for (std::size_t i = 0; i < n_; ++i)
+        folded[i % 2 == 0 ? i / 2 : n_ - 1 - i / 2] = {series[s][i], pair ? series[s + 1][i] : 0.0};
+      if (n_ == 1)
+        modes = folded;  // kissfft reads past the end of one sample
+      else
+        fft_.fwd(modes, folded);
+      for (std::size_t k = 0; k < n_; ++k) {
+        const std::complex<double> mode = modes[k], mirror = std::conj(modes[(n_ - k) % n_]),
+                                   turn(table_[k], -sine(k));
+        const double scale = std::sqrt((k == 0 ? 1.0 : 2.0) / static_cast<double>(n_)) / 2;
+        all[s][k] = scale * ((mode + mirror) * turn).real();
+        if (pair) all[s + 1][k] = scale * ((mode - mirror) * turn).imag();
+      }
+    }
+    return all;
   }
   /// Returns the variance of coefficient k under noise: sum over lags d of the covariance times
   /// sum_i b(i) b(i + d), a geometric series.
@@ -127,9 +138,11 @@ WindowFilling fill(std::span<const double> x, double step, const ChannelNoise& n
                    bool skip_mean, const std::vector<std::span<const double>>& shapes) {
   WindowFilling f;
   Cosines cosines(x.size());
-  const std::vector<double> own = cosines.coefficients(x);
-  std::vector<std::vector<double>> parts;
-  for (const auto& shape : shapes) parts.push_back(cosines.coefficients(shape));
+  std::vector<std::span<const double>> series = shapes;
+  series.push_back(x);
+  std::vector<std::vector<double>> parts = cosines.coefficients(series);
+  const std::vector<double> own = std::move(parts.back());
+  parts.pop_back();
   const double length = static_cast<double>(x.size()) * step;
   for (std::size_t k = skip_mean ? 1 : 0; k < x.size(); ++k) {
     const double frequency = static_cast<double>(k) / (2 * length);
