@@ -20,6 +20,7 @@
 //   switching_times()             optional: switching times of its equations
 //   closed_form()                 of a machine, optional: parameters from a record, without a search
 //   measure(), memory()           of a measurement: its operation on phasors, and its reach in time
+//   angle_lag()                   of a measurement, optional: lag of an angle integrated from its frequency
 // CMake finds the header and generates the registry. T runs over `Scalars`.
 #include <algorithm>
 #include <array>
@@ -336,6 +337,9 @@ struct Effect {
   void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
   /// Returns how far an output sample of measure() depends on input to either side [s]; nullptr: 0.
   double (*memory)(const double* p);
+  /// Returns the time T [s] by which an angle that is integrated from the reported frequency lags: the true
+  /// angle is theta + T d(theta)/dt. nullptr: 0.
+  double (*angle_lag)(const double* p) = nullptr;
   OpsFor<Scalars>::type ops;                         ///< equations for every scalar type
   std::shared_ptr<const void> user_model = nullptr;  ///< data of a user-defined model
   /// Returns estimates of all parameters by linear least squares from a record without noise, best first.
@@ -442,6 +446,7 @@ Effect make_effect() {
     e.switching_times = +[](const void*, const double* p) { return M::switching_times(p); };
   if constexpr (requires { &M::measure; }) e.measure = &M::measure;
   if constexpr (requires { &M::memory; }) e.memory = &M::memory;
+  if constexpr (requires { &M::angle_lag; }) e.angle_lag = &M::angle_lag;
   if constexpr (requires { &M::closed_form; }) e.closed_form = &M::closed_form;
   e.ops = make_all_ops<M>(static_cast<Scalars*>(nullptr));
   return e;

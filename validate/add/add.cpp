@@ -304,7 +304,7 @@ std::string sentence_of(const Addition& a) {
 
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name) {
   const auto named = [&](const hypothesis::Hypothesis& h) { return plain(h.name) == plain(name); };
-  auto all = hypothesis::all_hypotheses(model.under_test(), model.library, model.reading.component);
+  auto all = hypothesis::all_hypotheses(model.under_test(), model.library, {model.reading.component, true});
   std::vector<std::string> names;
   for (const auto& h : all) names.push_back(h.name);
   std::ranges::move(hypothesis::all_replacements(model.under_test(), model.library), std::back_inserter(all));
@@ -319,6 +319,13 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
     throw InputError({"effect " + std::string(effect->name), "swingbank add",
                       "it acts at given times and so belongs to one event, not to the plant",
                       "write it into the model file by hand"});
+  const auto reader = sim::reader_of(effect->slot);
+  if (reader && std::ranges::none_of(model.plant.controls,
+                                     [&](const sim::plant::Block& b) { return b.effect->slot == *reader; }))
+    throw InputError(
+        {"effect " + std::string(effect->name), "swingbank add",
+         fmt::format("its output acts through the {}, and the model has none", sim::slot_name(*reader)),
+         fmt::format("add the {} first", sim::slot_name(*reader))});
   throw InputError({"effect " + std::string(effect->name), "swingbank add",
                     "no free place in slot " + std::string(sim::slot_name(effect->slot)),
                     "write \"" + std::string(effect->name) +

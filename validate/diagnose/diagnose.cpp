@@ -80,10 +80,7 @@ class Diagnoser {
       keep();
       report_preliminary(side_sentence(result_));
       const hypothesis::BaseModel base_model = present_model();
-      result_.ranked = hypothesis::try_hypotheses(
-          base_model,
-          hypothesis::all_hypotheses(base_model.under_test(), base_model.library, base_model.component()),
-          options_.progress);
+      result_.ranked = hypothesis::try_hypotheses(base_model, base_model.hypotheses(), options_.progress);
       keep();
       report_preliminary(leading_sentence(result_));
       if (stopped()) return false;
@@ -327,7 +324,7 @@ class Diagnoser {
                                                           const hypothesis::Judgement& first,
                                                           const std::vector<std::string>& but = {}) const {
     const hypothesis::BaseModel then = hypothesis::after(base_model, first);
-    auto all = hypothesis::all_hypotheses(then.under_test(), then.library, then.component());
+    auto all = then.hypotheses();
     std::erase_if(all, [&](const hypothesis::Hypothesis& h) { return std::ranges::count(but, h.name) > 0; });
     auto pairs = hypothesis::try_hypotheses(then, std::move(all), options_.progress);
     // A competitor of the best hypothesis in the same slot is kept: its start may have been poor.

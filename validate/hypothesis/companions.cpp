@@ -23,8 +23,9 @@ struct Companion {
 std::vector<Companion> companions_in(const BaseModel& base_model, const sim::plant::Plant& plant,
                                      std::vector<reduced::Change>& changes) {
   std::vector<Companion> all;
-  for (const Hypothesis& h :
-       all_hypotheses({plant, base_model.conventions}, base_model.library, base_model.component())) {
+  BaseModel with_control = base_model;
+  with_control.plant = plant;
+  for (const Hypothesis& h : with_control.hypotheses()) {
     if ((h.side != Side::machine && h.side != Side::measurement) || h.free.empty()) continue;
     Companion companion{h.name, {}};
     const auto add = [&](const sim::plant::Plant& from, const sim::plant::Plant& to) {

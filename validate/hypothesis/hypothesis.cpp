@@ -67,8 +67,8 @@ bool occupied(const sim::plant::Plant& plant, const sim::Effect& effect) {
 bool is_read(const sim::plant::Plant& plant, const sim::Effect& effect) {
   const auto reader = sim::reader_of(effect.slot);
   return !reader || std::ranges::any_of(plant.controls, [&](const sim::plant::Block& b) {
-           return b.effect->slot == *reader;
-         });
+    return b.effect->slot == *reader;
+  });
 }
 
 /// Sets the free parameters and start values of an instrument. Its errors are small, and the response is
@@ -124,15 +124,17 @@ Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect&
 }
 
 void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::EffectLibrary& library,
-                 record::Component component, std::vector<Hypothesis>& all) {
+                 const RecordContents& recorded, std::vector<Hypothesis>& all) {
   for (const sim::Effect* effect : library.all()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
     const bool tried = !sim::library::variant_of(*effect);  // a variant is covered by its main effect
     if (!fits || !tried || effect->switching_times || occupied(tested.plant, *effect)) continue;
-    if (!playin::belongs_to(component, effect->slot) || !is_read(tested.plant, *effect)) continue;
+    if (!playin::belongs_to(recorded.component, effect->slot) || !is_read(tested.plant, *effect)) continue;
     if (!sim::slot_conflict(*tested.plant.machine.effect, *effect).empty()) continue;
-    if (instrument && !(playin::can_be_taken_back(*effect) && playin::touches_phasors(*effect))) continue;
+    if (instrument &&
+        !(playin::can_be_taken_back(*effect) && playin::changes_playback(*effect, recorded.integrated_angle)))
+      continue;
     all.push_back(added_to(tested, *effect));
   }
 }
@@ -293,9 +295,10 @@ std::string_view side_name(Side side) {
 
 std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
                                        const sim::library::EffectLibrary& library,
-                                       record::Component component) {
+                                       const RecordContents& recorded) {
+  const record::Component component = recorded.component;
   std::vector<Hypothesis> all;
-  add_effects(tested, library, component, all);
+  add_effects(tested, library, recorded, all);
   for (int b = 0; b < sim::plant::first_measurement(tested.plant); ++b)
     std::ranges::move(null_groups(tested, b), std::back_inserter(all));
   if (playin::belongs_to(component, Slot::machine) && !tested.plant.machine.effect->converter)

@@ -34,13 +34,19 @@ struct Hypothesis {
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
 };
 
+/// Contents of a plant's records that decide which hypotheses they can show.
+struct RecordContents {
+  record::Component component = record::Component::plant;  ///< recorded part of the plant
+  bool integrated_angle = false;                           ///< an angle was integrated from a frequency
+};
+
 /// Returns every hypothesis that the library allows for the plant; the hypotheses refer to the library's
-/// effects. Effects whose output nothing reads (a stabiliser without an exciter) and effects that act at given
-/// times, which are specific to one event, are left out. For a component, only effects of this component are
-/// returned.
+/// effects. Effects whose output nothing reads (a stabiliser without an exciter) and effects that act at
+/// given times, which are specific to one event, are left out. For a component, only effects of this
+/// component are returned.
 std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
                                        const sim::library::EffectLibrary& library,
-                                       record::Component component = record::Component::plant);
+                                       const RecordContents& recorded = {});
 /// Returns a hypothesis for every control that does not share its slot and every other effect of that slot.
 std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
                                          const sim::library::EffectLibrary& library);

@@ -61,14 +61,14 @@ void bring(const BaseModel& base_model, Hypothesis& h) {
 
 std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& pair,
                                  const std::vector<Judgement>& alone) {
-  const auto all = all_hypotheses(base_model.under_test(), base_model.library, base_model.component());
+  const auto all = base_model.hypotheses();
   const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
              second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
   if (first == all.end() || second == all.end()) return {};  // one effect requires the other to be present
   const Judgement stays = staying(*second, pair.fit);
   const BaseModel then = after(base_model, stays);
   std::vector<Judgement> competitors;
-  for (Hypothesis& h : all_hypotheses(then.under_test(), then.library, then.component())) {
+  for (Hypothesis& h : then.hypotheses()) {
     const auto known = std::ranges::find(alone, h.name, [](const Judgement& j) { return j.hypothesis.name; });
     const bool in_slot = first->slot >= 0 && h.slot == first->slot;
     const bool accepted_alone = known != alone.end() && known->accepted && known->hypothesis.with.empty();
@@ -97,12 +97,11 @@ Judgement crossed(const BaseModel& base_model, const Cross& cross) {
     std::erase_if(all, [&](const Hypothesis& h) { return h.name != name; });
     return all;
   };
-  const auto first =
-      named(all_hypotheses(base_model.under_test(), base_model.library, base_model.component()), cross.stays);
+  const auto first = named(base_model.hypotheses(), cross.stays);
   if (first.empty()) return none;
   const Judgement stays = staying(first.front(), cross.stays_in->fit);
   const BaseModel then = after(base_model, stays);
-  auto second = named(all_hypotheses(then.under_test(), then.library, then.component()), cross.joins);
+  auto second = named(then.hypotheses(), cross.joins);
   return second.empty() ? none : begun(then, std::move(second.front()), cross.joins_in->fit);
 }
 

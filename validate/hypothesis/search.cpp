@@ -276,6 +276,12 @@ void try_from(const BaseModel& base_model, const fit::Fit& other, Judgement& j) 
     j.fit = std::move(f);
 }
 
+std::vector<Hypothesis> BaseModel::hypotheses() const {
+  const bool integrated = std::ranges::any_of(
+      events, [](const event::FitEvent& e) { return e.record.angle == record::AngleSource::integrated; });
+  return all_hypotheses(under_test(), library, {component(), integrated});
+}
+
 std::vector<Judgement> try_hypotheses(const BaseModel& base_model, std::vector<Hypothesis> all,
                                       const event::Progress& report) {
   const auto others = std::stable_partition(

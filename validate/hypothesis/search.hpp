@@ -42,6 +42,8 @@ struct BaseModel {
   [[nodiscard]] record::Component component() const {
     return events.empty() ? record::Component::plant : events.front().record.component;
   }
+  /// Returns every hypothesis that these events can show (all_hypotheses).
+  [[nodiscard]] std::vector<Hypothesis> hypotheses() const;
 };
 
 /// Fits the hypotheses without judging them. Returns them in descending order of evidence, without those that

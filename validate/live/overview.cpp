@@ -250,8 +250,12 @@ std::vector<float> ribbon(const Step& step, std::size_t event, const Values& val
 
 nlohmann::json effects_json(const Step& step) {
   json all = json::array();
-  for (const auto& h :
-       hypothesis::all_hypotheses(step.model.under_test(), step.model.library, step.model.reading.component))
+  const hypothesis::RecordContents recorded{
+      step.model.reading.component,
+      std::ranges::any_of(step.played->events, [](const compare::EventComparison& e) {
+        return e.record.angle == record::AngleSource::integrated;
+      })};
+  for (const auto& h : hypothesis::all_hypotheses(step.model.under_test(), step.model.library, recorded))
     all.push_back({{"name", h.name}, {"what", h.what}, {"side", std::string(hypothesis::side_name(h.side))}});
   return all;
 }

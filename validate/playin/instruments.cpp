@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "sim/plant/measure.hpp"
 
@@ -15,6 +16,14 @@ using Kind = SensitivityParameter::Kind;
 constexpr int kFine = 8;
 /// Step of a parameter as a fraction of its range; the error of the sensitivity does not depend on it.
 constexpr double kMove = 1e-5;
+
+/// Returns the lag of an angle that is integrated from the chain's frequency [s].
+double angle_lag(const std::vector<sim::plant::Block>& chain) {
+  double lag = 0;
+  for (const sim::plant::Block& b : chain)
+    if (b.effect->angle_lag) lag += b.effect->angle_lag(b.p.data());
+  return lag;
+}
 
 /// Gain of the chain of instruments for constant phasors.
 struct SteadyGain {
@@ -73,6 +82,11 @@ class Observed {
     const Complex power = Complex(run.start.P, run.start.Q) * back_;
     inner_.start.P = power.real();
     inner_.start.Q = power.imag();
+    if (const double lag = angle_lag(chain_); lag != 0 && r.angle == record::AngleSource::integrated) {
+      advanced_.emplace(run.curve->advanced(lag));
+      inner_.curve = &*advanced_;
+      inner_.start.voltage *= std::polar(1.0, lag * run.start.drift);
+    }
     if (sim::plant::memory(chain_) > 0) refine(r);
   }
   Response run() {
@@ -133,7 +147,7 @@ class Observed {
   [[nodiscard]] bool has_same_gain(const sim::plant::Plant& moved) const {
     const SteadyGain gain =
         steady_gain(moved.measurements, 1 / run_.record->step(), run_.conventions.frequency);
-    return gain.V == gain_.V && gain.I == gain_.I &&
+    return gain.V == gain_.V && gain.I == gain_.I && angle_lag(moved.measurements) == angle_lag(chain_) &&
            (sim::plant::memory(moved.measurements) > 0) == (stride_ > 1);
   }
   [[nodiscard]] Response::Sensitivity along_both(const SensitivityParameter& d,
@@ -184,6 +198,7 @@ class Observed {
   PlaybackRun inner_;
   std::span<const SensitivityParameter> parameters_;
   record::Record fine_;
+  std::optional<VoltageCurve> advanced_;  ///< played-in voltage with the lag of its angle removed
   SteadyGain gain_;
   sim::Phasors shown_;  ///< inputs of the chain
   Complex back_ = 1;    ///< ratio of power in the plant to measured power, for constant phasors
@@ -237,7 +252,8 @@ std::vector<double> away_from_null(const sim::Effect& instrument) {
 
 }  // namespace
 
-bool touches_phasors(const sim::Effect& instrument) {
+bool changes_playback(const sim::Effect& instrument, bool integrated_angle) {
+  if (integrated_angle && instrument.angle_lag) return true;
   const sim::Phasors before = probe();
   sim::Phasors after = before;
   instrument.measure(away_from_null(instrument).data(), 1, after);

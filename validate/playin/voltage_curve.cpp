@@ -101,6 +101,28 @@ VoltageCurve VoltageCurve::moved(const record::Record& record, std::vector<Switc
   return curve;
 }
 
+VoltageCurve VoltageCurve::advanced(double lead) const {
+  std::vector<Segment> segments = *segments_;
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    const Segment& from = (*segments_)[s];
+    for (std::size_t k = 0; from.t.size() > 1 && k < from.t.size(); ++k)
+      if (from.v[k] != 0.0) segments[s].v[k] *= std::polar(1.0, lead * (slope(from, k) / from.v[k]).imag());
+    fit(segments[s]);
+  }
+  VoltageCurve curve = *this;
+  curve.segments_ = std::make_shared<const std::vector<Segment>>(std::move(segments));
+  return curve;
+}
+
+/// Returns the time derivative at a knot [pu/s]; the segment has at least two.
+Complex VoltageCurve::slope(const Segment& s, std::size_t k) {
+  const bool last = k + 1 == s.t.size();
+  const std::size_t i = last ? k - 1 : k;
+  const double h = s.t[i + 1] - s.t[i];
+  const Complex chord = (s.v[i + 1] - s.v[i]) / h, a = s.second_derivative[i], b = s.second_derivative[i + 1];
+  return last ? chord + h / 6 * (a + 2.0 * b) : chord - h / 6 * (2.0 * a + b);
+}
+
 void VoltageCurve::fit(Segment& segment) {
   const auto& t = segment.t;
   const auto& v = segment.v;

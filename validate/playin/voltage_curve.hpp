@@ -25,6 +25,9 @@ class VoltageCurve {
   /// remain in their segment. Throws as the constructor.
   [[nodiscard]] VoltageCurve moved(const record::Record& record, std::vector<Switching> switchings) const;
 
+  /// Returns the curve with the angle advanced to theta + lead d(theta)/dt at every knot; `lead` in s.
+  [[nodiscard]] VoltageCurve advanced(double lead) const;
+
   /// Number of segments.
   [[nodiscard]] int segments() const { return static_cast<int>(segments_->size()); }
   /// Returns the end of a segment [s], which is the start of the next.
@@ -44,6 +47,7 @@ class VoltageCurve {
     double rate = 0;                            ///< nearly uniform inner knots per second; 0: too few
   };
   static void fit(Segment& segment);
+  [[nodiscard]] static Complex slope(const Segment& segment, std::size_t knot);
   static std::size_t interval(const Segment& segment, double t);
   std::vector<Switching> switchings_;
   double last_ = 0;  ///< end of the record [s]

@@ -167,5 +167,25 @@ TEST(PmuFrequency, EndsUseTheAvailableSamples) {
   for (const double df : after.df) EXPECT_NEAR(df, 0.05, 1e-12);  // a steady 3 Hz up to the last sample
 }
 
+/// A first-order lag has gain 1 / sqrt(1 + (W T)^2) and phase -atan(W T) for a sine.
+TEST(FrequencyLag, FiltersASine) {
+  constexpr double kRate = 240.0, kW = 2 * kPi * 1.1, kLag = 0.08, kSettled = 20 * kLag;
+  const Phasors before = swing(kRate);
+  const Phasors after = measured("FREQLAG", {kLag}, before);
+  const double gain = 1 / std::hypot(1.0, kW * kLag), phase = std::atan(kW * kLag);
+  for (std::size_t k = 0; k < after.df.size(); ++k) {
+    const double t = static_cast<double>(k) / kRate;
+    // The chords of a sine of period 218 samples are (2 pi / 218)^2 / 12 = 7e-5 of it too small.
+    if (t > kSettled) {
+      EXPECT_NEAR(after.df[k], gain * 0.3 * kW * std::cos(kW * t - phase) / (2 * kPi * 60.0), 1e-6) << t;
+    }
+    EXPECT_EQ(after.V[k], before.V[k]);
+  }
+  EXPECT_EQ(measured("FREQLAG", {0.0}, before).df, before.df);
+  Phasors steady = before;
+  std::ranges::fill(steady.df, 0.01);
+  for (const double df : measured("FREQLAG", {kLag}, steady).df) EXPECT_NEAR(df, 0.01, 1e-15);
+}
+
 }  // namespace
 }  // namespace swingbank::sim::effects

@@ -198,6 +198,8 @@ TEST(Add, FindsExactNamesAndListsSimilarOnes) {
               ElementsAre(AllOf(HasSubstr("no free place"), HasSubstr("exciter"))));
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "VREFSTEP"); }),
               ElementsAre(HasSubstr("belongs to one event")));
+  EXPECT_THAT(test::messages([&] { find_hypothesis(example(false), "IEEEST"); }),
+              ElementsAre(HasSubstr("add the exciter first")));
 }
 
 }  // namespace

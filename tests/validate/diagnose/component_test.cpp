@@ -19,7 +19,7 @@ TEST(ComponentHypotheses, ContainOnlyBlocksOfTheComponent) {
        {record::Component::exciter, record::Component::governor, record::Component::machine}) {
     const plant::PlantModel part = event::component_model(model, component);
     std::vector<std::string> names;
-    for (const auto& h : hypothesis::all_hypotheses(part.under_test(), part.library, component))
+    for (const auto& h : hypothesis::all_hypotheses(part.under_test(), part.library, {component}))
       names.push_back(h.name);
     const bool exciter = component == record::Component::exciter,
                governor = component == record::Component::governor;

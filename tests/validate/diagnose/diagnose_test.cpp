@@ -28,8 +28,8 @@ TEST(Hypotheses, IncludeEveryFittingEffectAndNullGroup) {
   std::vector<std::string> names;
   for (const auto& h : hypothesis::all_hypotheses(model.under_test(), model.library)) names.push_back(h.name);
   for (const sim::Effect& e : sim::library::compiled_effects()) {
-    const bool instrument =
-        e.slot == sim::Slot::measurement && playin::can_be_taken_back(e) && playin::touches_phasors(e);
+    const bool instrument = e.slot == sim::Slot::measurement && playin::can_be_taken_back(e) &&
+                            playin::changes_playback(e, false);
     const bool joins = (e.slot == sim::Slot::transformer || sim::is_control(e.slot) || instrument) &&
                        e.switching_times == nullptr && sim::library::variant_of(e) == nullptr;
     const bool suits = sim::slot_conflict(*model.plant.machine.effect, e).empty() && !sim::reader_of(e.slot);

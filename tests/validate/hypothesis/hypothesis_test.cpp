@@ -93,6 +93,14 @@ TEST(Hypotheses, LeaveOutEffectsThatNothingReads) {
   model.plant.controls.push_back({sexs, sexs->default_parameters()});
   for (const auto name : {"IEEEVC", "IEEEST", "MAXEX2"}) EXPECT_EQ(tried(name), 1) << name;
 }
+/// A lag of the frequency changes an angle that was integrated from it, and no measured one.
+TEST(Hypotheses, TryTheLagOfAFrequencyOnlyForAnIntegratedAngle) {
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  for (const bool integrated : {false, true}) {
+    const auto all = all_hypotheses(model.under_test(), model.library, {.integrated_angle = integrated});
+    EXPECT_EQ(std::ranges::count(all, "FREQLAG", &Hypothesis::name), integrated ? 1 : 0);
+  }
+}
 TEST(Hypotheses, ReplacementIsAloneInItsSlot) {
   const plant::PlantModel model = fit::ExciterExample(0.2).model;  // its only control is SEXS
   const auto all = all_replacements(model.under_test(), model.library);

@@ -82,6 +82,39 @@ TEST_F(InstrumentsTest, TransformerErrorsAreRemovedFromInputAndAppliedToOutput) 
   }
 }
 
+/// An angle that was integrated from a lagged frequency is corrected; a measured angle is not changed.
+TEST_F(InstrumentsTest, LagOfTheFrequencyIsRemovedFromAnIntegratedAngle) {
+  constexpr double kLag = 0.1;
+  const VoltageCurve own(record_, switchings_);
+  const Response plain = simulate_playback(run_with(model_.plant, record_, own));
+  record::Record lagged = record_;
+  lagged.angle = record::AngleSource::integrated;
+  double y = record_.theta.front();  // a lag of the frequency is one of its integral, which begins at rest
+  const double left = std::exp(-record_.step() / kLag), a = record_.step() / kLag;
+  for (std::size_t k = 1; k < record_.theta.size(); ++k) {
+    const double from = record_.theta[k - 1], to = record_.theta[k];
+    y = left * y + (1 - left) * from + (to - from) * (1 - (1 - left) / a);
+    lagged.theta[k] = y;
+  }
+  sim::plant::Plant plant = model_.plant;
+  plant.measurements = {instrument("FREQLAG:lag=0.1")};
+  const VoltageCurve shown(lagged, switchings_);
+  const auto largest = [&](const Response& r) {
+    double most = 0;
+    for (std::size_t k = 0; k < r.of(Output::P).size(); ++k)
+      if (std::ranges::none_of(switchings_, [&](const Switching& s) {
+            return std::abs(record_.t[k] - s.time) < 4 * record_.step();  // the angle steps with the voltage
+          }))
+        most = std::max(most, std::abs(r.of(Output::P)[k] - plain.of(Output::P)[k]));
+    return most;
+  };
+  const double removed = largest(observe(run_with(plant, lagged, shown))),
+               left_in = largest(observe(run_with(model_.plant, lagged, shown)));
+  EXPECT_LT(removed, left_in / 10) << left_in;
+  const Response measured = observe(run_with(plant, record_, own));
+  EXPECT_EQ(measured.of(Output::P), plain.of(Output::P));
+}
+
 TEST_F(InstrumentsTest, SkewShowsOnlyAtTheStep) {
   sim::plant::Plant plant = model_.plant;
   const VoltageCurve curve(record_, switchings_);
