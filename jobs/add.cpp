@@ -269,7 +269,7 @@ int run(CommandLine& line, int argc, char** argv) {
   c.held_out = a.of.held_out;
   a.of.limit_threads();
   a.command = jobs::command_line("add", argc, argv);
-  return jobs::guarded("add", [&] { return run_interruptible(a); });
+  return run_interruptible(a);
 }
 
 }  // namespace swingbank::jobs::add_command

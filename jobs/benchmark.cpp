@@ -174,7 +174,7 @@ int run(CommandLine& line, int argc, char** argv) {
   if (!line.parse(argc, argv)) return line.end();
   a.command = jobs::command_line("benchmark", argc, argv);
   if (a.threads > 0) omp_set_num_threads(a.threads);
-  return jobs::guarded("benchmark", [&] { return run(a); });
+  return run(a);
 }
 
 }  // namespace swingbank::jobs::benchmark_command

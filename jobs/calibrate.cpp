@@ -329,7 +329,7 @@ int run(CommandLine& line, int argc, char** argv) {
   a.options.held_out = a.of.held_out;
   a.of.limit_threads();
   a.command = jobs::command_line("calibrate", argc, argv);
-  return jobs::guarded("calibrate", [&] { return run_interruptible(a); });
+  return run_interruptible(a);
 }
 
 }  // namespace swingbank::jobs::calibrate_command

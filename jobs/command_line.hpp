@@ -82,7 +82,8 @@ class CommandLine {
 };
 
 /// Declares the options on `line` (summary and name are set), parses the arguments and runs the command.
-/// Returns the exit code: 0 success, 1 an error that was printed, others as the command's help states.
+/// Returns the exit code: 0 success, 1 an error that was printed, others as the command's help states. Its
+/// exceptions become messages (guarded.hpp).
 using CommandFunction = int(CommandLine& line, int argc, char** argv);
 
 }  // namespace swingbank::jobs

@@ -161,7 +161,7 @@ int run(CommandLine& line, int argc, char** argv) {
   if (a.of.model.empty() && a.system.empty()) return line.lacks("--model with --records, or --system,");
   a.command = jobs::command_line("compare", argc, argv);
   a.of.limit_threads();
-  return jobs::guarded("compare", [&] { return a.system.empty() ? run(a) : run_system(a); });
+  return a.system.empty() ? run(a) : run_system(a);
 }
 
 }  // namespace swingbank::jobs::compare_command

@@ -82,12 +82,7 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--seed", overrides.seed, "seed, instead of the config's").not_negative();
   line.add("--out", out, "file to write: .csv or .h5");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    return run(config, overrides, points, out);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 1;
-  }
+  return run(config, overrides, points, out);
 }
 
 }  // namespace swingbank::jobs::databank_command

@@ -175,16 +175,14 @@ int run(CommandLine& line, int argc, char** argv) {
   if (!c.thresholds && c.of.model.empty() && c.fleet.fleet.empty())
     return line.lacks("--model with --records, or --fleet,");
   c.line = jobs::command_line("diagnose", argc, argv);
-  return jobs::guarded("diagnose", [&] {
-    if (c.thresholds) return print_thresholds(c.of.json);
-    c.fleet.out = c.of.out;
-    c.fleet.json = c.of.json;
-    c.fleet.threads = c.of.threads;
-    if (!c.plant.empty()) return diagnose_fleet_plant(c.fleet, c.plant);
-    if (!c.fleet.fleet.empty()) return diagnose_fleet(c.fleet);
-    c.of.limit_threads();
-    return run(c);
-  });
+  if (c.thresholds) return print_thresholds(c.of.json);
+  c.fleet.out = c.of.out;
+  c.fleet.json = c.of.json;
+  c.fleet.threads = c.of.threads;
+  if (!c.plant.empty()) return diagnose_fleet_plant(c.fleet, c.plant);
+  if (!c.fleet.fleet.empty()) return diagnose_fleet(c.fleet);
+  c.of.limit_threads();
+  return run(c);
 }
 
 }  // namespace swingbank::jobs::diagnose_command

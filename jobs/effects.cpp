@@ -261,12 +261,7 @@ int run(CommandLine& line, int argc, char** argv) {
       .excludes(json);
   line.example("swingbank effects SEXS --toml");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    return dyr_files.empty() ? run(names, user_models, shape) : jobs::print_coverage(dyr_files, shape.json);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return dyr_files.empty() ? run(names, user_models, shape) : jobs::print_coverage(dyr_files, shape.json);
 }
 
 }  // namespace swingbank::jobs::effects_command

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -17,7 +16,6 @@
 #include "base/json.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
-#include "jobs/guarded.hpp"
 #include "jobs/progress_plan.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/event/component_model.hpp"

@@ -66,7 +66,7 @@ int run(CommandLine& line, int argc, char** argv) {
       "Data that PSS/E keeps in the .raw (MBASE, ZR, ZX, a step-up transformer) are written as "
       "comments. Instruments and changed references belong to a record and are omitted.");
   if (!line.parse(argc, argv)) return line.end();
-  return jobs::guarded("export", [&] { return run(a); });
+  return run(a);
 }
 
 }  // namespace swingbank::jobs::export_command

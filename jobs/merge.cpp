@@ -47,12 +47,7 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--out", into, "folder of the whole; new, empty, or of the same config").required();
   line.add_choice("--progress", mode, Progress::words(), "auto, bar, lines or none");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    return run(from, into, static_cast<Progress::Mode>(mode));
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 1;
-  }
+  return run(from, into, static_cast<Progress::Mode>(mode));
 }
 
 }  // namespace swingbank::jobs::merge_command

@@ -103,12 +103,7 @@ int run(CommandLine& line, int argc, char** argv) {
   line.footer("Only the unit's own records are read; errors in other records are ignored.");
   line.example("swingbank plant --raw grid.raw --dyr grid.dyr --bus 33 --out plant.toml");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    return run(a);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return run(a);
 }
 
 }  // namespace swingbank::jobs::plant_command

@@ -208,14 +208,9 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add_flag("--json", o.json, "print the estimate as JSON instead of a table");
   line.example("swingbank predict --network results --model plant.toml --records fault1.csv");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    train::runtime::use_best_blas_kernels(argv);
-    train::runtime::set_up_runtime(0);
-    return run(o);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  train::runtime::use_best_blas_kernels(argv);
+  train::runtime::set_up_runtime(0);
+  return run(o);
 }
 
 }  // namespace swingbank::jobs::predict_command

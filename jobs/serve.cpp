@@ -142,7 +142,7 @@ int run(CommandLine& line, int argc, char** argv) {
   declare(line, c);
   if (!line.parse(argc, argv)) return line.end();
   if (c.of.model.empty()) return line.lacks("--model with --records");
-  return jobs::guarded("serve", [&] { return run(c); });
+  return run(c);
 }
 
 }  // namespace swingbank::jobs::serve_command

@@ -490,11 +490,6 @@ int run(CommandLine& line, int argc, char** argv) {
   line.example(
       "swingbank simulate --raw grid.raw --dyr grid.dyr --fault 16:1.0:1.1 --t-end 10 --out run.csv");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    return simulate(o);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 1;
-  }
+  return simulate(o);
 }
 }  // namespace swingbank::jobs::simulate_command

@@ -38,24 +38,16 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--out", out, "folder for tables.md with its pictures, tables.html and CSV files").required();
   line.example("swingbank tables results --out tables");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    const auto results = report::read_results({folders.begin(), folders.end()});
-    const report::TablesReport report = report::make_tables(results, sources(results, argc, argv));
-    const std::filesystem::path folder = out;
-    for (const auto& [name, content] : report.csv) write_file(folder / name, content);
-    for (const auto& [name, content] : report.pictures)
-      write_file(folder / report::kPictureFolder / name, content);
-    write_file(folder / "tables.md", report.markdown);
-    write_file(folder / "tables.html", report.html);
-    fmt::print("{}summary: {}\n", report.markdown, (folder / "tables.html").string());
-    return 0;
-  } catch (const InputError& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "swingbank tables: {}\n", error.what());
-    return 1;
-  }
+  const auto results = report::read_results({folders.begin(), folders.end()});
+  const report::TablesReport report = report::make_tables(results, sources(results, argc, argv));
+  const std::filesystem::path folder = out;
+  for (const auto& [name, content] : report.csv) write_file(folder / name, content);
+  for (const auto& [name, content] : report.pictures)
+    write_file(folder / report::kPictureFolder / name, content);
+  write_file(folder / "tables.md", report.markdown);
+  write_file(folder / "tables.html", report.html);
+  fmt::print("{}summary: {}\n", report.markdown, (folder / "tables.html").string());
+  return 0;
 }
 
 }  // namespace swingbank::jobs::tables_command

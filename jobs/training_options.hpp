@@ -146,26 +146,20 @@ int training_main(int argc, char** argv, jobs::CommandLine& line, TrainingOption
                   const Check& check, const Work& work) {
   options.add_to(line);
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    if (!options.print.empty()) {
-      fmt::print("{}\n",
-                 train::loop::read_experiment(options.experiment).print(options.preset, options.print));
-      return 0;
-    }
-    if (!options.keep.empty()) {
-      train::loop::read_experiment(options.experiment);
-      fmt::print("{}\n", jobs::keep_experiment(options.experiment, options.keep).string());
-      return 0;
-    }
-    train::run::RunRequest request = options.request();
-    check(request);
-    train::runtime::use_best_blas_kernels(argv);
-    catch_stop_signals();
-    return work(std::move(request));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
+  if (!options.print.empty()) {
+    fmt::print("{}\n", train::loop::read_experiment(options.experiment).print(options.preset, options.print));
+    return 0;
   }
+  if (!options.keep.empty()) {
+    train::loop::read_experiment(options.experiment);
+    fmt::print("{}\n", jobs::keep_experiment(options.experiment, options.keep).string());
+    return 0;
+  }
+  train::run::RunRequest request = options.request();
+  check(request);
+  train::runtime::use_best_blas_kernels(argv);
+  catch_stop_signals();
+  return work(std::move(request));
 }
 
 }  // namespace swingbank

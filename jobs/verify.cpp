@@ -50,12 +50,7 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--processes", processes, "that read at once (default: one per core)").positive();
   line.add_choice("--progress", mode, Progress::words(), "auto, bar, lines or none");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    return run(folder, processes, static_cast<Progress::Mode>(mode));
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 1;
-  }
+  return run(folder, processes, static_cast<Progress::Mode>(mode));
 }
 
 }  // namespace swingbank::jobs::verify_command

@@ -240,12 +240,7 @@ int run(jobs::CommandLine& line, int argc, char** argv) {
   line.example(
       "swingbank blind-test --config configs/blind/tiny.toml --make 5 --diagnose --score --out blind");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    return on_ranks(argc, argv, o);
-  } catch (const std::exception& e) {
-    fmt::print(stderr, "{}\n", e.what());
-    return 1;
-  }
+  return on_ranks(argc, argv, o);
 }
 
 }  // namespace swingbank::research::blind_test_command

@@ -113,13 +113,8 @@ int run(jobs::CommandLine& line, int argc, char** argv) {
   line.add("--name", o.name, "name of the written preset");
   line.add("--out", o.out, "folder of the experiments with the scaled preset");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    run(o);
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  run(o);
+  return 0;
 }
 
 }  // namespace swingbank::research::night_plan_command

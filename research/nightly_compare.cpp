@@ -197,20 +197,14 @@ int run(jobs::CommandLine& line, int argc, char** argv) {
   line.add("--night", date, "date of the run, YYYY-MM-DD (default: the latest)");
   line.example("swingbank nightly-compare out/nightly");
   if (!line.parse(argc, argv)) return line.end();
-  try {
-    const NightlyRuns runs = read_runs(folder);
-    if (runs.empty() || (!date.empty() && !runs.contains(date))) {
-      throw InputError(Problem{"no results of the nightly benchmark '" + date + "'", folder,
-                               "no <date>/<experiment>/results/*.json there",
-                               "run research/nightly.sh first"});
-    }
-    if (date.empty()) date = runs.rbegin()->first;
-    print_report(date, changes_of(date, runs));
-    return 0;
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
+  const NightlyRuns runs = read_runs(folder);
+  if (runs.empty() || (!date.empty() && !runs.contains(date))) {
+    throw InputError(Problem{"no results of the nightly benchmark '" + date + "'", folder,
+                             "no <date>/<experiment>/results/*.json there", "run research/nightly.sh first"});
   }
+  if (date.empty()) date = runs.rbegin()->first;
+  print_report(date, changes_of(date, runs));
+  return 0;
 }
 
 }  // namespace swingbank::research::nightly_compare_command
