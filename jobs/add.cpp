@@ -21,8 +21,7 @@ namespace {
 
 using namespace validate;
 
-constexpr const char *kModel = "model.toml", *kDyr = "model.dyr", *kPage = "report.html",
-                     *kResult = "add.json", *kRetrained = "retrain.json";
+constexpr const char *kModel = "model.toml", *kDyr = "model.dyr", *kRetrained = "retrain.json";
 
 struct Arguments {
   jobs::AnalysisOptions of{"added"};
@@ -33,17 +32,6 @@ struct Arguments {
   retrain::RetrainOptions training;
   std::optional<fit::Fit> fitted;  ///< result of the fit, once it has ended
 };
-
-/// Plays the events with the submitted and with the completed model.
-std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
-                                       const plant::PlantModel& after,
-                                       const std::vector<record::Record>& records) {
-  compare::CompareOptions options = a.of.comparing();
-  options.progress = a.options.calibrate.progress;
-  const auto shown = compare::measurements(a.of.compared(records), options, before.plant.mva);
-  return {compare::play_and_judge("submitted", before, shown, options, a.of.judging.by),
-          compare::play_and_judge("completed", after, shown, options, a.of.judging.by)};
-}
 
 /// Adds parameters, use of the events and evidence of one addition to a page.
 void say_on(compare::CommandPage& page, const add::Addition& added) {
@@ -83,43 +71,26 @@ compare::CommandPage page_of(const add::Completion& c) {
 void write(const Arguments& a, const plant::PlantModel& before, plant::PlantModel model,
            const std::vector<std::string>& provenance, nlohmann::json result, const std::string& text,
            const std::vector<compare::Played>& played, compare::CommandPage page) {
-  page.handed_in = compare::handed_in(model, compare::followed_events(played));
-  const plant::PlantModel whole_before = event::whole_model(before);
-  model = event::whole_model(std::move(model));
-  model.submitted.reset();
-  OutputFolder& results = a.of.results();
-  const auto model_file = results.file(kModel), page_file = results.file(kPage);
   page.title = "Added effect: " + before.name;
   page.subtitle =
       fmt::format("{} of {:g} MVA; the submitted and the completed model, compared with the records.",
                   plant::subject(before), before.plant.mva);
   page.played = played;
-  page.provenance = {{"command", a.command},
-                     {"software", fmt::format("swingbank {}", jobs::version())},
-                     {"model", before.origin}};
-  for (const auto& e : played.front().events)
-    if (const auto begins = record::beginning(e.record); !begins.empty())
-      page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
-  jobs::sign(page.provenance, a.of.judging, a.of.model, a.of.records);
   result["standard_values"] = before.defaults;
   result["records"] = a.metadata;
-  result["fitness"] = compare::fitness_json(played);
-  page.signatures = true;
-  compare::add_report(result, "add", page);
-  plant::write_plant_file(model_file, model, provenance);
-  const plant::WrittenRecords records = plant::write_records_beside(model_file, whole_before, model);
-  if (!records.file.empty()) results.file(records.file.filename());
-  page.figures = json_text(result);
-  write_file(page_file, compare::command_html(page));
-  write_file(results.file(kResult), json_text(result, 1) + "\n");
-  results.finish();
-  if (a.of.json)
-    fmt::print("{}\n", json_text(result, 1));
-  else
-    fmt::print("{}{}{}\n{}\nmodel: {}\n{}\n", compare::fitness_text(played),
-               compare::handed_in_text(*page.handed_in), text, compare::error_text(played, page.use),
-               model_file.string(), records.line);
-  a.of.judging.print(page_file);
+  const std::string errors = compare::error_text(played, page.use);
+  const std::string usable =
+      jobs::write_results(a.of, "add", a.command, before, model, std::move(page), result);
+  const plant::PlantModel whole_before = event::whole_model(before);
+  model = event::whole_model(std::move(model));
+  model.submitted.reset();
+  const auto file = a.of.results().file(kModel);
+  plant::write_plant_file(file, model, provenance);
+  const plant::WrittenRecords records = plant::write_records_beside(file, whole_before, model);
+  if (!records.file.empty()) a.of.results().file(records.file.filename());
+  jobs::finish_results(a.of, result,
+                       compare::fitness_text(played) + usable + text + "\n" + errors +
+                           "\nmodel: " + file.string() + "\n" + records.line);
 }
 
 /// Throws InputError if options contradict each other; called before any computation.
@@ -179,8 +150,8 @@ int run(Arguments& a, plant::PlantModel& model) {
   calibrate::held_out_events(records, a.options.calibrate.held_out);
   for (const std::filesystem::path& file : std::vector<std::filesystem::path>{a.training.dataset, a.truth})
     if (!file.empty()) note_input(file);
-  a.of.open_results(
-      "add", {kModel, kDyr, kPage, kResult, kRetrained, jobs::kInterruptedModel, "add-interrupted.json"});
+  a.of.open_results("add", {kModel, kDyr, jobs::kPage, "add.json", kRetrained, jobs::kInterruptedModel,
+                            "add-interrupted.json"});
   a.options.calibrate.progress =
       a.until_adequate ? jobs::progress_line() : jobs::progress_line(jobs::kAddPlan);
   if (a.until_adequate) {
@@ -191,7 +162,8 @@ int run(Arguments& a, plant::PlantModel& model) {
     for (const auto& one : c.added)
       for (const auto& line : provenance_lines(one, model, a.command)) provenance.push_back(line);
     provenance.push_back(c.sentence);
-    const auto played = play_both(a, model, c.model, records);
+    const auto played =
+        jobs::play_both(a.of, model, "completed", c.model, records, a.options.calibrate.progress);
     write(a, model, c.model, provenance, add::completion_json(c),
           compare::complete_text(c.adequate, terminal_report(c)), played, page_of(c));
     return played.back().fitness.exit_code(c.adequate);
@@ -200,7 +172,8 @@ int run(Arguments& a, plant::PlantModel& model) {
   a.fitted = done.with;
   a.of.keep_user_models(done.model);
   const bool complete = done.adequate && done.earns;
-  const auto played = play_both(a, model, done.model, records);
+  const auto played =
+      jobs::play_both(a.of, model, "completed", done.model, records, a.options.calibrate.progress);
   write(a, model, done.model, provenance_lines(done, model, a.command), add::addition_json(done),
         compare::complete_text(complete, terminal_report(done)), played, page_of(done));
   if (a.retrain)

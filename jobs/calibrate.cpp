@@ -25,7 +25,7 @@ namespace {
 using namespace validate;
 
 constexpr const char *kModel = "model.toml", *kBiasedModel = "model-not-adequate.toml", *kDyr = "model.dyr",
-                     *kCurveFit = "curve-fit.toml", *kPage = "report.html", *kResult = "calibrate.json";
+                     *kCurveFit = "curve-fit.toml";
 
 struct Arguments {
   jobs::AnalysisOptions of{"calibration"};
@@ -43,18 +43,6 @@ calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& mode
   options.events = a.options.events;
   options.adequate = a.options.adequate;
   return calibrate::curve_fit(model, std::move(records), options);
-}
-
-/// Plays the events with the submitted and with the calibrated model.
-std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
-                                       const plant::PlantModel& after,
-                                       const std::vector<record::Record>& records) {
-  interruption_point();
-  compare::CompareOptions options = a.of.comparing();
-  options.progress = a.options.progress;
-  const auto shown = compare::measurements(a.of.compared(records), options, before.plant.mva);
-  return {compare::play_and_judge("submitted", before, shown, options, a.of.judging.by),
-          compare::play_and_judge("calibrated", after, shown, options, a.of.judging.by)};
 }
 
 /// Returns the use of the records: fit, or verification if held out.
@@ -97,66 +85,69 @@ std::string write_model(const Arguments& a, plant::PlantModel before, plant::Pla
   return fmt::format("model: {}\n{}\nnext: {}", file.string(), dyr.line, next_command(a, adequate));
 }
 
-/// Writes the page report.html, and completes `result`, which is embedded in it, by its common part. Returns
-/// the text on the calibrated model for the terminal.
-std::string write_page(const Arguments& a, const plant::PlantModel& model,
-                       const plant::PlantModel& calibrated, compare::CommandPage page,
-                       nlohmann::json& result) {
+/// Result of one method.
+struct Calibrated {
+  const plant::PlantModel& model;
+  bool adequate;
+  const std::string& sentence;
+  std::string report, comparison = {};  ///< for the terminal: on the fit; on other methods beside it
+  std::vector<std::string> provenance;  ///< head of the model's file
+  std::vector<fit::FittedParameter> parameters;
+  nlohmann::json json;
+  std::vector<std::string> notes = {};  ///< for the page
+};
+
+/// Plays the events with both models.
+std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
+                                       const plant::PlantModel& after,
+                                       const std::vector<record::Record>& records) {
+  return jobs::play_both(a.of, before, "calibrated", after, records, a.options.progress);
+}
+
+/// Writes all files and prints the result. Returns the exit code.
+int write(const Arguments& a, const plant::PlantModel& model, const check::RecordSet& set,
+          const std::vector<compare::Played>& played, Calibrated c) {
+  compare::CommandPage page;
   page.title = "Calibration: " + model.name;
   page.subtitle = fmt::format("{} of {:g} MVA; its parameters fitted to the records.", plant::subject(model),
                               model.plant.mva);
-  page.tried.insert(page.tried.begin(),
-                    "calibrate does not test the structure; “swingbank diagnose” names missing components.");
-  page.next = next_command(a, page.complete);
-  page.provenance = {{"command", a.command},
-                     {"software", fmt::format("swingbank {}", jobs::version())},
-                     {"model", model.origin}};
-  for (const auto& e : page.played.front().events)
-    if (const auto begins = record::beginning(e.record); !begins.empty())
-      page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
-  jobs::sign(page.provenance, a.of.judging, a.of.model, a.of.records);
-  page.handed_in = compare::handed_in(calibrated, compare::followed_events(page.played));
-  page.signatures = true;
-  compare::add_report(result, "calibrate", page);
-  page.figures = json_text(result);
-  write_file(a.of.results().file(kPage), compare::command_html(page));
-  return compare::handed_in_text(*page.handed_in);
+  page.complete = c.adequate;
+  page.sentence = c.sentence;
+  page.played = played;
+  page.parameters = jobs::page_parameters(c.parameters, c.model.plant);
+  page.use = use_of(a, set.records);
+  page.tried = {"calibrate does not test the structure; “swingbank diagnose” names missing components."};
+  page.tried.insert(page.tried.end(), c.notes.begin(), c.notes.end());
+  page.next = next_command(a, c.adequate);
+  c.json["records"] = jobs::records_json(set);
+  const std::string errors = compare::error_text(played, page.use);
+  const std::string usable =
+      jobs::write_results(a.of, "calibrate", a.command, model, c.model, std::move(page), c.json);
+  const std::string written = write_model(a, model, c.model, c.adequate, c.provenance);
+  jobs::finish_results(a.of, c.json,
+                       compare::fitness_text(played) + usable + compare::complete_text(c.adequate, c.report) +
+                           "\n" + errors + c.comparison + "\n" + written);
+  return played.back().fitness.exit_code(c.adequate);
 }
 
-void say(const Arguments& a, const nlohmann::json& result, const std::string& text) {
-  write_file(a.of.results().file(kResult), json_text(result, 1) + "\n");
-  a.of.results().finish();
-  fmt::print("{}\n", a.of.json ? json_text(result, 1) : text);
-}
-
-int run_baseline(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
-                 const calibrate::Truth& truth, const nlohmann::json& metadata) {
-  const calibrate::CurveFit f = fit_curves(a, model, records);
+int run_baseline(Arguments& a, const plant::PlantModel& model, const check::RecordSet& set,
+                 const calibrate::Truth& truth) {
+  const calibrate::CurveFit f = fit_curves(a, model, set.records);
   a.fitted.emplace();
   a.fitted->plant = f.model.plant;
   a.fitted->parameters = f.parameters;
   a.fitted->chi2 = f.after;
   a.fitted->values = 1;
-  const auto played = play_both(a, model, f.model, records);
-  const std::string written =
-      write_model(a, model, f.model, f.adequate, calibrate::provenance_lines(f, model, a.command));
   nlohmann::json result = calibrate::curve_fit_json(f, truth);
   result["standard_values"] = model.defaults;
-  result["records"] = metadata;
-  result["fitness"] = compare::fitness_json(played);
-  compare::CommandPage page;
-  page.complete = f.adequate;
-  page.sentence = f.sentence;
-  page.played = played;
-  page.parameters = jobs::page_parameters(f.parameters, f.model.plant);
-  page.use = use_of(a, records);
-  const std::string usable = write_page(a, model, f.model, std::move(page), result);
-  say(a, result,
-      compare::fitness_text(played) + usable +
-          compare::complete_text(f.adequate, calibrate::terminal_report(f, truth)) + "\n" +
-          compare::error_text(played, use_of(a, records)) + "\n" + written);
-  a.of.judging.print(a.of.results().path() / kPage);
-  return played.back().fitness.exit_code(f.adequate);
+  return write(a, model, set, play_both(a, model, f.model, set.records),
+               {.model = f.model,
+                .adequate = f.adequate,
+                .sentence = f.sentence,
+                .report = calibrate::terminal_report(f, truth),
+                .provenance = calibrate::provenance_lines(f, model, a.command),
+                .parameters = f.parameters,
+                .json = std::move(result)});
 }
 
 /// Returns the network's estimate from the fitted events, by `swingbank predict` or from --start; nothing
@@ -187,29 +178,17 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
 }
 
 /// Runs the sparse parameter selection (--fewest) and writes the model with the selected parameters changed.
-int run_sparse(Arguments& a, const plant::PlantModel& model, const std::vector<record::Record>& records,
-               const nlohmann::json& metadata) {
-  const calibrate::WrongParameters w = calibrate::wrong_parameters(model, records, a.options);
+int run_sparse(Arguments& a, const plant::PlantModel& model, const check::RecordSet& set) {
+  const calibrate::WrongParameters w = calibrate::wrong_parameters(model, set.records, a.options);
   a.fitted = w.found.fit;
-  const auto played = play_both(a, model, w.model, records);
-  const std::string written =
-      write_model(a, model, w.model, w.is_adequate(), {"command: " + a.command, w.sentence});
-  nlohmann::json result = calibrate::wrong_json(w);
-  result["records"] = metadata;
-  result["fitness"] = compare::fitness_json(played);
-  compare::CommandPage page;
-  page.complete = w.is_adequate();
-  page.sentence = w.sentence;
-  page.played = played;
-  page.parameters = jobs::page_parameters(w.found.fit.parameters, w.model.plant);
-  page.use = use_of(a, records);
-  const std::string usable = write_page(a, model, w.model, std::move(page), result);
-  say(a, result,
-      compare::fitness_text(played) + usable +
-          compare::complete_text(w.is_adequate(), calibrate::wrong_text(w)) + "\n" +
-          compare::error_text(played, use_of(a, records)) + "\n" + written);
-  a.of.judging.print(a.of.results().path() / kPage);
-  return played.back().fitness.exit_code(w.is_adequate());
+  return write(a, model, set, play_both(a, model, w.model, set.records),
+               {.model = w.model,
+                .adequate = w.is_adequate(),
+                .sentence = w.sentence,
+                .report = calibrate::wrong_text(w),
+                .provenance = {"command: " + a.command, w.sentence},
+                .parameters = w.found.fit.parameters,
+                .json = calibrate::wrong_json(w)});
 }
 
 int run(Arguments& a, plant::PlantModel& model) {
@@ -217,9 +196,8 @@ int run(Arguments& a, plant::PlantModel& model) {
   const calibrate::Truth truth = a.truth.empty() ? calibrate::Truth{} : calibrate::read_truth(a.truth, model);
   const check::RecordSet set = jobs::read_events(a.of.records, model, preparing);
   const std::vector<record::Record>& records = set.records;
-  const nlohmann::json metadata = jobs::records_json(set);
   if (!a.start.empty()) note_input(a.start);
-  a.of.open_results("calibrate", {kModel, kBiasedModel, kDyr, kCurveFit, kPage, kResult,
+  a.of.open_results("calibrate", {kModel, kBiasedModel, kDyr, kCurveFit, jobs::kPage, "calibrate.json",
                                   jobs::kInterruptedModel, "calibrate-interrupted.json"});
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
     throw InputError({"a network's start", "--method curve-fit",
@@ -227,8 +205,8 @@ int run(Arguments& a, plant::PlantModel& model) {
   if (a.sparse && (a.method != "fit" || !(a.network.empty() && a.start.empty())))
     throw InputError({"a method or a start of its own", "--fewest", "it is a method of its own",
                       "leave --method, --network and --start out"});
-  if (a.method == "curve-fit") return run_baseline(a, model, records, truth, metadata);
-  if (a.sparse) return run_sparse(a, model, records, metadata);
+  if (a.method == "curve-fit") return run_baseline(a, model, set, truth);
+  if (a.sparse) return run_sparse(a, model, set);
   const bool both = a.method == "both";
   const auto estimate = ask_network(a, records);
   sim::plant::Plant estimated;
@@ -242,12 +220,8 @@ int run(Arguments& a, plant::PlantModel& model) {
   std::optional<calibrate::CurveFit> curve;
   if (both) curve = fit_curves(a, model, records);
   const auto played = play_both(a, model, c.model, records);
-  std::string text = compare::complete_text(adequate, calibrate::terminal_report(c)) + "\n" +
-                     compare::error_text(played, use_of(a, records));
   nlohmann::json result = calibrate::calibration_json(c);
   result["standard_values"] = model.defaults;
-  result["records"] = metadata;
-  result["fitness"] = compare::fitness_json(played);
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (curve) {
     plant::write_plant_file(a.of.results().file(kCurveFit), event::whole_model(curve->model),
@@ -257,24 +231,25 @@ int run(Arguments& a, plant::PlantModel& model) {
   }
   if (estimate) ways.push_back(calibrate::way_of(*estimate, estimated, c));
   ways.push_back(calibrate::way_of(c));
+  std::string comparison;
   if (ways.size() > 2 || !truth.empty()) {
-    text += "\n" + calibrate::beside_report(ways, truth);
+    comparison = "\n" + calibrate::beside_report(ways, truth);
     result["side_by_side"] = calibrate::beside_json(ways, truth);
   }
-  compare::CommandPage page;
-  page.complete = adequate;
-  page.sentence = c.sentence;
-  page.played = played;
   std::vector<fit::FittedParameter> fitted;
   for (const auto& p : c.parameters) fitted.push_back(p.fit);
-  page.parameters = jobs::page_parameters(fitted, c.model.plant);
-  page.use = use_of(a, records);
-  for (const auto& blur : c.blurs) page.tried.push_back(calibrate::describe(c, blur));
-  text = compare::fitness_text(played) + write_page(a, model, c.model, std::move(page), result) + text;
-  text += "\n" + write_model(a, model, c.model, adequate, calibrate::provenance_lines(c, a.command));
-  say(a, result, text);
-  a.of.judging.print(a.of.results().path() / kPage);
-  return played.back().fitness.exit_code(adequate);
+  std::vector<std::string> notes;
+  for (const auto& blur : c.blurs) notes.push_back(calibrate::describe(c, blur));
+  return write(a, model, set, played,
+               {.model = c.model,
+                .adequate = adequate,
+                .sentence = c.sentence,
+                .report = calibrate::terminal_report(c),
+                .comparison = comparison,
+                .provenance = calibrate::provenance_lines(c, a.command),
+                .parameters = fitted,
+                .json = std::move(result),
+                .notes = notes});
 }
 
 int run_interruptible(Arguments& a) {

@@ -1,5 +1,6 @@
 #pragma once
-// Results of an interrupted calibrate or add: the parameter values that the fit had reached.
+// Results of calibrate and add: page, JSON and, after an interruption, the parameter values that the fit had
+// reached.
 #include <fmt/format.h>
 
 #include <optional>
@@ -7,13 +8,60 @@
 #include "base/json.hpp"
 #include "base/write_file.hpp"
 #include "jobs/analysis_options.hpp"
+#include "validate/compare/report_json.hpp"
 #include "validate/event/event.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/plant/plant_file.hpp"
 
 namespace swingbank::jobs {
 
-constexpr const char* kInterruptedModel = "model-interrupted.toml";
+constexpr const char *kInterruptedModel = "model-interrupted.toml", *kPage = "report.html";
+
+/// Plays the events with the submitted model and with `after`, named `name`.
+inline std::vector<validate::compare::Played> play_both(const AnalysisOptions& of,
+                                                        const validate::plant::PlantModel& before,
+                                                        const std::string& name,
+                                                        const validate::plant::PlantModel& after,
+                                                        const std::vector<validate::record::Record>& records,
+                                                        const validate::event::Progress& progress) {
+  interruption_point();
+  validate::compare::CompareOptions options = of.comparing();
+  options.progress = progress;
+  const auto shown = validate::compare::measurements(of.compared(records), options, before.plant.mva);
+  return {validate::compare::play_and_judge("submitted", before, shown, options, of.judging.by),
+          validate::compare::play_and_judge(name, after, shown, options, of.judging.by)};
+}
+
+/// Writes the page and COMMAND.json, whose common part it adds to `result`; the page embeds it. `page` has
+/// title, events and verdict already. Returns the text on the model `after` for the terminal.
+inline std::string write_results(const AnalysisOptions& of, const std::string& command,
+                                 const std::string& command_line, const validate::plant::PlantModel& before,
+                                 const validate::plant::PlantModel& after,
+                                 validate::compare::CommandPage page, nlohmann::json& result) {
+  using namespace validate;
+  result["fitness"] = compare::fitness_json(page.played);
+  page.handed_in = compare::handed_in(after, compare::followed_events(page.played));
+  page.provenance = {{"command", command_line},
+                     {"software", fmt::format("swingbank {}", version())},
+                     {"model", before.origin}};
+  for (const auto& e : page.played.front().events)
+    if (const auto begins = record::beginning(e.record); !begins.empty())
+      page.provenance.emplace_back("begins", e.record.name + ": t = 0 is " + begins);
+  sign(page.provenance, of.judging, of.model, of.records);
+  page.signatures = true;
+  compare::add_report(result, command, page);
+  page.figures = json_text(result);
+  write_file(of.results().file(kPage), compare::command_html(page));
+  write_file(of.results().file(command + ".json"), json_text(result, 1) + "\n");
+  return compare::handed_in_text(*page.handed_in);
+}
+
+/// Ends a command whose results are written: prints `result` or `text`, and the page to --pdf.
+inline void finish_results(const AnalysisOptions& of, const nlohmann::json& result, const std::string& text) {
+  of.results().finish();
+  fmt::print("{}\n", of.json ? json_text(result, 1) : text);
+  of.judging.print(of.results().path() / kPage);
+}
 
 /// Writes the values of an interrupted fit to files named "...interrupted" and keeps the results of earlier
 /// runs. Returns the exit code.
