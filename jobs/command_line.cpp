@@ -174,38 +174,22 @@ CommandLine::CommandLine(const std::string& summary, const std::string& name)
 CommandLine::~CommandLine() = default;
 void CommandLine::describe(const std::string& text) { parser_->app.description(text); }
 
-Option CommandLine::add(const std::string& names, std::string& value, const std::string& meaning) {
+template <class T>
+Option CommandLine::add(const std::string& names, T& value, const std::string& meaning) {
   return add(parser_->app.add_option(names, value), meaning);
 }
-Option CommandLine::add(const std::string& names, std::filesystem::path& value, const std::string& meaning) {
-  return add(parser_->app.add_option(names, value), meaning);
-}
-Option CommandLine::add(const std::string& names, int& value, const std::string& meaning) {
-  return add(parser_->app.add_option(names, value), meaning);
-}
-Option CommandLine::add(const std::string& names, unsigned& value, const std::string& meaning) {
-  return add(parser_->app.add_option(names, value), meaning);
-}
-Option CommandLine::add(const std::string& names, std::uint64_t& value, const std::string& meaning) {
-  return add(parser_->app.add_option(names, value), meaning);
-}
-Option CommandLine::add(const std::string& names, double& value, const std::string& meaning) {
-  return add(parser_->app.add_option(names, value), meaning);
-}
-Option CommandLine::add(const std::string& names, std::optional<std::uint64_t>& value,
-                        const std::string& meaning) {
-  return add(parser_->app.add_option(names, value), meaning);
-}
-Option CommandLine::add(const std::string& names, std::optional<double>& value, const std::string& meaning) {
-  return add(parser_->app.add_option(names, value), meaning);
-}
-Option CommandLine::add(const std::string& names, std::vector<std::string>& value,
-                        const std::string& meaning) {
-  return add(parser_->app.add_option(names, value), meaning);
-}
-Option CommandLine::add(const std::string& names, std::vector<int>& value, const std::string& meaning) {
-  return add(parser_->app.add_option(names, value), meaning);
-}
+using Text = const std::string&;
+template Option CommandLine::add(Text, std::string&, Text);
+template Option CommandLine::add(Text, std::filesystem::path&, Text);
+template Option CommandLine::add(Text, int&, Text);
+template Option CommandLine::add(Text, unsigned&, Text);
+template Option CommandLine::add(Text, std::uint64_t&, Text);
+template Option CommandLine::add(Text, double&, Text);
+template Option CommandLine::add(Text, std::optional<std::uint64_t>&, Text);
+template Option CommandLine::add(Text, std::optional<double>&, Text);
+template Option CommandLine::add(Text, std::vector<std::string>&, Text);
+template Option CommandLine::add(Text, std::vector<int>&, Text);
+
 Option CommandLine::add_choice(const std::string& names, int& place, const std::vector<std::string>& words,
                                const std::string& meaning) {
   const std::function<void(const std::string&)> keep = [&place, words](const std::string& word) {

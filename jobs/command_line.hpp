@@ -45,16 +45,10 @@ class CommandLine {
   /// Replaces the summary at the head of the help, where a command needs more than one line.
   void describe(const std::string& text);
 
-  Option add(const std::string& names, std::string& value, const std::string& meaning);
-  Option add(const std::string& names, std::filesystem::path& value, const std::string& meaning);
-  Option add(const std::string& names, int& value, const std::string& meaning);
-  Option add(const std::string& names, unsigned& value, const std::string& meaning);
-  Option add(const std::string& names, std::uint64_t& value, const std::string& meaning);
-  Option add(const std::string& names, double& value, const std::string& meaning);
-  Option add(const std::string& names, std::optional<std::uint64_t>& value, const std::string& meaning);
-  Option add(const std::string& names, std::optional<double>& value, const std::string& meaning);
-  Option add(const std::string& names, std::vector<std::string>& value, const std::string& meaning);
-  Option add(const std::string& names, std::vector<int>& value, const std::string& meaning);
+  /// Adds an option. T: std::string, std::filesystem::path, int, unsigned, std::uint64_t, double, an optional
+  /// std::uint64_t or double, or a vector of std::string or int.
+  template <class T>
+  Option add(const std::string& names, T& value, const std::string& meaning);
   /// Adds an option whose value is one of `words`; sets `place` to its index, from 0.
   Option add_choice(const std::string& names, int& place, const std::vector<std::string>& words,
                     const std::string& meaning);
