@@ -2,6 +2,10 @@
 // names.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "base/constants.hpp"
 #include "sim/user_models/detail/reader.hpp"
 
@@ -73,6 +77,22 @@ int Reader::value(const std::string& key, std::optional<double> otherwise) {
   return values_[key] = vertex;
 }
 
+namespace {
+/// Operations of an expression that are one vertex with the same operands.
+constexpr std::pair<Op, Act> kSameAct[] = {{Op::add, Act::add},
+                                           {Op::subtract, Act::subtract},
+                                           {Op::multiply, Act::multiply},
+                                           {Op::divide, Act::divide},
+                                           {Op::minimum, Act::minimum},
+                                           {Op::maximum, Act::maximum},
+                                           {Op::square_root, Act::square_root},
+                                           {Op::exponential, Act::exponential},
+                                           {Op::logarithm, Act::logarithm},
+                                           {Op::sine, Act::sine},
+                                           {Op::cosine, Act::cosine},
+                                           {Op::clamp, Act::clamp}};
+}  // namespace
+
 int Reader::lower(const Tree& tree, const std::string& key) {
   const Node& n = *tree;
   if (n.op == Op::number) return graph_.constant(n.value);
@@ -85,42 +105,15 @@ int Reader::lower(const Tree& tree, const std::string& key) {
   }
   std::array<int, 3> v = {-1, -1, -1};
   for (std::size_t i = 0; i < n.arguments.size(); ++i) v[i] = lower(n.arguments[i], key);
-  switch (n.op) {
-    case Op::add:
-      return graph_.make(Act::add, v[0], v[1]);
-    case Op::subtract:
-      return graph_.make(Act::subtract, v[0], v[1]);
-    case Op::multiply:
-      return graph_.make(Act::multiply, v[0], v[1]);
-    case Op::divide:
-      return graph_.make(Act::divide, v[0], v[1]);
-    case Op::minimum:
-      return graph_.make(Act::minimum, v[0], v[1]);
-    case Op::maximum:
-      return graph_.make(Act::maximum, v[0], v[1]);
-    case Op::absolute:
-      return graph_.make(Act::select_less, v[0], graph_.constant(0.0), graph_.negate(v[0]), v[0]);
-    case Op::square_root:
-      return graph_.make(Act::square_root, v[0]);
-    case Op::exponential:
-      return graph_.make(Act::exponential, v[0]);
-    case Op::logarithm:
-      return graph_.make(Act::logarithm, v[0]);
-    case Op::sine:
-      return graph_.make(Act::sine, v[0]);
-    case Op::cosine:
-      return graph_.make(Act::cosine, v[0]);
-    case Op::clamp:
-      return graph_.make(Act::clamp, v[0], v[1], v[2]);
-    case Op::dead_band:
-      return graph_.dead_band(v[0], v[1]);
-    case Op::negate:
-      return graph_.negate(v[0]);
-    case Op::power:
-      return graph_.power(v[0], static_cast<int>(n.value));
-    default:
-      return graph_.constant(0.0);  // unreachable: the parser allows comparisons in select only
-  }
+  if (const auto* at = std::ranges::find(kSameAct, n.op, &std::pair<Op, Act>::first);
+      at != std::end(kSameAct))
+    return graph_.make(at->second, v[0], v[1], v[2]);
+  if (n.op == Op::absolute)
+    return graph_.make(Act::select_less, v[0], graph_.constant(0.0), graph_.negate(v[0]), v[0]);
+  if (n.op == Op::dead_band) return graph_.dead_band(v[0], v[1]);
+  if (n.op == Op::negate) return graph_.negate(v[0]);
+  if (n.op == Op::power) return graph_.power(v[0], static_cast<int>(n.value));
+  return graph_.constant(0.0);  // unreachable: the parser allows comparisons in select only
 }
 
 std::string Reader::names() const {
