@@ -49,14 +49,14 @@ bool already_done(const std::filesystem::path& file, const json& run) {
 }
 
 /// Computes the score. `predicted`: `rows` x parameters [raw units].
-loop::Score judge(const std::vector<double>& predicted, const data::ShardStream& stream,
-                  const data::TargetScale& scale, std::span<const std::uint64_t> rows) {
-  const data::Labels& labels = stream.labels();
+loop::Score judge(const std::vector<double>& predicted, const PreparedRun& run,
+                  std::span<const std::uint64_t> rows) {
+  const data::Labels& labels = run.stream.labels();
   const std::size_t p = labels.parameters;
   std::vector<double> truth(predicted.size());
   for (std::size_t i = 0; i < truth.size(); ++i) truth[i] = labels.values[rows[i / p] * p + i % p];
-  const mpi::store::Dataset& d = stream.dataset();
-  return loop::score({predicted, truth, scale.mean, d.parameter_names, d.parameter_units, d.parameter_low,
+  const mpi::store::Dataset& d = run.stream.dataset();
+  return loop::score({predicted, truth, run.scale.mean, d.parameter_names, d.parameter_units, d.parameter_low,
                       d.parameter_high});
 }
 
@@ -68,43 +68,30 @@ struct Guesses {
   [[nodiscard]] bool none() const { return raw.empty(); }
 };
 
-Guesses guesses_for(const data::ShardStream& stream, const RunRequest& r, const data::TargetScale& scale) {
+Guesses guesses_for(const PreparedRun& run) {
   Guesses g;
-  const std::string& method = r.experiment.training(r.preset, r.network).corrects;
-  if (method.empty()) return g;
-  g.raw = guesses(stream, method, r.out, r.quiet);
-  g.width = scale.unit.size();
+  if (run.recipe.corrects.empty()) return g;
+  g.raw = guesses(run.stream, run.recipe.corrects, run.request.out, run.request.quiet);
+  g.width = run.scale.unit.size();
   for (std::size_t i = 0; i < g.raw.size(); ++i) {
     const std::size_t p = i % g.width;
-    g.scaled.push_back(static_cast<float>((g.raw[i] - scale.mean[p]) / scale.unit[p]));
+    g.scaled.push_back(static_cast<float>((g.raw[i] - run.scale.mean[p]) / run.scale.unit[p]));
   }
   return g;
 }
 
-/// Returns raw values clamped to the sampling box, which contains every truth.
-std::vector<double> raw_outputs(const std::vector<float>& out, const data::TargetScale& scale,
-                                const mpi::store::DatasetHeader& d, std::span<const std::uint64_t> rows,
+networks::NetworkShape shape_of(const data::Features& features, const PreparedRun& run,
                                 const Guesses& guesses) {
-  std::vector<double> raw(out.size());
-  const std::size_t p = scale.mean.size();
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const double value = guesses.none() ? scale.raw(out[i], i % p)
-                                        : guesses.raw[rows[i / p] * p + i % p] + out[i] * scale.unit[i % p];
-    raw[i] = std::clamp(value, d.parameter_low[i % p], d.parameter_high[i % p]);
-  }
-  return raw;
-}
-
-networks::NetworkShape shape_of(const data::Features& features, const data::TargetScale& scale,
-                                const Guesses& guesses, const mpi::store::DatasetHeader& d) {
+  const data::TargetScale& scale = run.scale;
   networks::NetworkShape shape{static_cast<std::int64_t>(features.channels()),
                                static_cast<std::int64_t>(features.length()),
                                static_cast<std::int64_t>(scale.unit.size()),
                                {}};
-  for (std::size_t p = 0; p < scale.unit.size(); ++p)
-    shape.targets.push_back({d.parameter_names[p], scale.mean[p], scale.unit[p], scale.origin[p]});
-  for (std::size_t p = 0; p < scale.unit.size(); ++p)
+  for (std::size_t p = 0; p < scale.unit.size(); ++p) {
+    shape.targets.push_back(
+        {run.stream.dataset().parameter_names[p], scale.mean[p], scale.unit[p], scale.origin[p]});
     shape.output_bias.push_back(guesses.none() ? static_cast<float>(scale.scaled(scale.mean[p], p)) : 0.0f);
+  }
   if (!guesses.none()) {
     shape.samples = shape.channels * shape.samples + static_cast<std::int64_t>(guesses.width);
     shape.channels = 1;
@@ -118,73 +105,26 @@ std::string scored(const loop::Score& s, double seconds) {
                      loop::duration(seconds));
 }
 
-/// Keeps about `wanted` rows, evenly spaced.
-void thin(std::vector<std::uint64_t>& rows, std::size_t wanted) {
-  const std::size_t every = std::max<std::size_t>(1, rows.size() / wanted);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < rows.size(); i += every) rows[kept++] = rows[i];
-  rows.resize(kept);
-}
-
-/// Throws if a method needs complete records but the dataset is not on disk.
-void require_records(const data::ShardStream& stream, const RunRequest& r) {
-  const bool reads =
-      direct::is_method(r.network) || !r.experiment.training(r.preset, r.network).corrects.empty();
-  if (reads && stream.from_memory())
-    throw InputError({"network " + r.network, "--simulate",
-                      "it reads whole records, which training from memory does not keep",
-                      "generate the dataset on a disk, or choose a network that reads series alone"});
-}
-
-/// What a request determines before any work: name and identity of the result, rows, scale of the targets.
-struct PreparedRun {
-  std::string name;
-  std::filesystem::path file;  ///< result
-  json identity;               ///< two runs with equal identities give the same result
-  data::RowSplit split;
-  data::TargetScale scale;
-};
-
-data::RowSplit split_of(const data::Labels& labels, const RunRequest& r) {
-  const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
-  data::RowSplit split = r.generator ? data::leave_one_out(labels, {*r.generator, recipe.validation_share,
-                                                                    r.seed, r.judged, recipe.set_aside})
-                         : r.experiment.across ? data::split_across(labels, recipe.validation_share, r.seed)
-                                               : data::split_by_point(labels, r.seed);
-  if (r.test_rows) thin(split.test, *r.test_rows);
-  if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
-  return split;
-}
-
-PreparedRun prepare(const data::ShardStream& stream, const RunRequest& r) {
-  require_records(stream, r);
-  const data::Labels& labels = stream.labels();
-  data::RowSplit split = split_of(labels, r);
-  data::TargetScale scale =
-      data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
-  const std::string name = run_name(r);
-  return {name, r.out / (name + ".json"), identity(stream, r), std::move(split), std::move(scale)};
-}
-
 /// Runs a method without training. No checkpoints: such a run takes minutes at most.
-RunOutcome run_direct(const data::ShardStream& stream, const RunRequest& r, const PreparedRun& d) {
+RunOutcome run_direct(const PreparedRun& run, const std::filesystem::path& result) {
+  const RunRequest& r = run.request;
+  const auto& rows = run.split.test;
   if (r.shuffle_labels)
     throw InputError({"a control run of " + r.network, "--shuffle-labels", "it is not trained on labels",
                       "leave it out, or choose a network"});
-  loop::TrainingProgress progress(d.name, d.split.test.size(), r.quiet);
-  progress.line(fmt::format("{} test rows, nothing to train", d.split.test.size()));
+  loop::TrainingProgress progress(run_name(r), rows.size(), r.quiet);
+  progress.line(fmt::format("{} test rows, nothing to train", rows.size()));
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t processor = std::clock();
-  const auto found = direct::estimate(stream.dataset(), d.split.test, r.network, stream.noise(),
+  const auto found = direct::estimate(run.stream.dataset(), rows, r.network, run.stream.noise(),
                                       [&](std::size_t done) { progress.update(done, "rows estimated"); });
   loop::LoopReport report;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
-  const loop::Score result = judge(found, stream, d.scale, d.split.test);
-  const json several = r.network == "floor" ? json() : several_json(stream.labels(), d.split.test, found);
-  write_text(d.file,
-             result_json(stream, r, {d.split, nullptr, report, result, {}, {}, several}).dump(2) + "\n");
-  progress.line(scored(result, report.seconds));
+  const loop::Score score = judge(found, run, rows);
+  const json several = r.network == "floor" ? json() : several_json(run.stream.labels(), rows, found);
+  write_text(result, result_json(run, {nullptr, report, score, {}, {}, several}).dump(2) + "\n");
+  progress.line(scored(score, report.seconds));
   return RunOutcome::done;
 }
 
@@ -225,107 +165,103 @@ std::string training_name(const RunRequest& r) {
 
 namespace {
 
-/// A run of a network, from the split to the result.
+/// Training of a network, and its score.
 class NetworkRun {
  public:
-  NetworkRun(const data::ShardStream& stream, const RunRequest& request, const mpi::items::Ranks& ranks,
-             const PreparedRun& prepared)
-      : stream_(stream),
-        request_(request),
+  NetworkRun(const PreparedRun& run, const mpi::items::Ranks& ranks)
+      : run_(run),
         ranks_(ranks),
-        recipe_(request.experiment.training(request.preset, request.network)),
-        split_(prepared.split),
-        scale_(prepared.scale),
-        known_(guesses_for(stream, request, prepared.scale)),
-        name_(training_name(request)),
-        identity_(training_identity(stream, request)),
-        checkpoint_(request.out / "checkpoints" / (name_ + ".checkpoint")),
-        progress_(name_, epochs() * split_.train.size(), request.quiet || ranks.rank() != 0) {}
+        known_(guesses_for(run)),
+        name_(training_name(run.request)),
+        checkpoint_(run.request.out / "checkpoints" / (name_ + ".checkpoint")),
+        quiet_(run.request.quiet || ranks.rank() != 0),
+        progress_(name_, epochs() * run.split.train.size(), quiet_) {}
 
-  /// Trains the network. Returns false if it was stopped and must be submitted again. Collective; only rank 0
-  /// may use the network afterwards.
-  bool train() {
-    if (recipe_.noise_levels && ranks_.from_first(ranks_.rank() == 0 && load() ? 1 : 0) != 0) return true;
-    features_ = data::Features::fit(
-        stream_, split_.train, request_.experiment.input(request_.preset, request_.network).pca_components);
-    loop::seed_torch(data::key(request_.seed, data::Purpose::weights));
-    network_ = networks::make_network(recipe_.kind, shape_of(features_, scale_, known_, stream_.dataset()));
-    print_sizes();
-    const std::vector<float> targets = targets_of_training(), weights = scale_.weights(recipe_.loss_power);
-    report_ = loop::train_network(
-        *network_, {stream_, features_, split_.train, split_.validation, targets, known_.scaled, weights},
-        settings(name_), progress_);
+  /// Returns the trained network; none if the training was stopped and must be submitted again. Collective;
+  /// only rank 0 may use the network.
+  std::optional<Trained> train() {
+    const RunRequest& r = run_.request;
+    Trained trained;
+    if (run_.recipe.noise_levels && ranks_.from_first(ranks_.rank() == 0 && load(trained) ? 1 : 0) != 0)
+      return trained;
+    trained.features = data::Features::fit(run_.stream, run_.split.train,
+                                           r.experiment.input(r.preset, r.network).pca_components);
+    loop::seed_torch(data::key(r.seed, data::Purpose::weights));
+    trained.network = networks::make_network(run_.recipe.kind, shape_of(trained.features, run_, known_));
+    print_sizes(trained);
+    const std::vector<float> targets = targets_of_training(),
+                             weights = run_.scale.weights(run_.recipe.loss_power);
+    trained.report = loop::train_network(*trained.network,
+                                         {run_.stream, trained.features, run_.split.train,
+                                          run_.split.validation, targets, known_.scaled, weights},
+                                         settings(name_), progress_);
     progress_.keep_chart();
-    const bool whole = report_.finished && (recipe_.posterior_epochs == 0 || train_head());
-    if (!whole) {
+    if (!trained.report.finished || (run_.recipe.posterior_epochs > 0 && !train_head(trained))) {
       progress_.line(
           fmt::format("saved to {}; submit the same command again to continue", checkpoint_.string()));
-      return false;
+      return std::nullopt;
     }
     // A network that corrects estimates is not saved: it cannot be used without them.
-    if (ranks_.rank() == 0 && request_.save_network && !request_.shuffle_labels &&
-        request_.train_share == 1 && known_.none())
-      save_network(file(), {stream_, request_, features_, scale_, split_, identity_, report_, *posterior_},
-                   *network_);
-    return true;
+    if (ranks_.rank() == 0 && r.save_network && !r.shuffle_labels && r.train_share == 1 && known_.none())
+      save_network(file(), run_, trained);
+    return trained;
   }
 
-  void judge_to(const std::filesystem::path& result) {
-    const std::vector<double> found = estimates(split_.test);
-    const loop::Score score = judge(found, stream_, scale_, split_.test);
-    const double seen = judge(estimates(split_.validation), stream_, scale_, split_.validation).mse;
-    const json believed = posterior_->head ? judge_posterior(*posterior_, context()) : json();
-    const json several =
-        several_json(stream_.labels(), split_.test, found,
-                     posterior_->head ? product_of_posteriors(*posterior_, context()) : FromSeveral());
-    const RunParts parts = {split_, &features_, report_, score, seen, believed, several};
-    write_text(result, result_json(stream_, request_, parts).dump(2) + "\n");
+  void judge_to(const std::filesystem::path& result, const Trained& trained) {
+    const data::RowSplit& split = run_.split;
+    const std::vector<double> found = estimates(trained, split.test);
+    const loop::Score score = judge(found, run_, split.test);
+    const double seen = judge(estimates(trained, split.validation), run_, split.validation).mse;
+    const bool head = trained.posterior.head != nullptr;
+    const json believed = head ? judge_posterior(run_, trained) : json();
+    const json several = several_json(run_.stream.labels(), split.test, found,
+                                      head ? product_of_posteriors(run_, trained) : FromSeveral());
+    const RunParts parts = {&trained.features, trained.report, score, seen, believed, several};
+    write_text(result, result_json(run_, parts).dump(2) + "\n");
     for (const char* kind : {".checkpoint", ".posterior.checkpoint"})
       std::filesystem::remove(std::filesystem::path(checkpoint_).replace_extension(kind));
     progress_.line(fmt::format("{}; MSE {:.4g} on rows of generators that trained; best epoch {} of {}",
-                               scored(score, report_.seconds), seen, report_.best_epoch, report_.epochs));
+                               scored(score, trained.report.seconds), seen, trained.report.best_epoch,
+                               trained.report.epochs));
   }
 
  private:
-  [[nodiscard]] std::size_t epochs() const { return request_.epochs.value_or(recipe_.epochs); }
-  [[nodiscard]] std::filesystem::path file() const { return network_file(request_.out / (name_ + ".json")); }
-  /// Loads the network that an earlier run of another noise level trained.
-  bool load() {
+  [[nodiscard]] std::size_t epochs() const { return run_.request.epochs.value_or(run_.recipe.epochs); }
+  [[nodiscard]] std::filesystem::path file() const {
+    return network_file(run_.request.out / (name_ + ".json"));
+  }
+  /// Loads the network that an earlier run of another noise level trained. Returns false if there is none.
+  bool load(Trained& trained) {
     if (!std::filesystem::exists(file())) return false;
     SavedNetwork saved = SavedNetwork::load(file());
-    if (saved.identity() != identity_) return false;
-    features_ = saved.features();
-    report_ = saved.report();
-    network_ = saved.release();
-    posterior_ = saved.release_posterior();
+    if (saved.identity() != run_.training_identity) return false;
+    trained = std::move(*saved.release());
     progress_.line(fmt::format("trained already: {}", file().string()));
     return true;
   }
-  [[nodiscard]] PosteriorContext context() const {
-    return {stream_, features_, scale_, split_, recipe_, request_.seed};
+  [[nodiscard]] std::vector<float> targets() const {
+    const RunRequest& r = run_.request;
+    return scaled_targets(run_.stream.labels(), run_.scale, run_.split, r.shuffle_labels, r.seed);
   }
-  bool train_head() {
-    const std::vector<float> targets =
-        scaled_targets(stream_.labels(), scale_, split_, request_.shuffle_labels, request_.seed);
-    loop::TrainingProgress progress(name_ + ", posterior", recipe_.posterior_epochs * split_.train.size(),
-                                    request_.quiet || ranks_.rank() != 0);
-    return train_posterior(*posterior_, *network_, context(), settings(name_ + "-posterior"), targets,
-                           progress);
+  bool train_head(Trained& trained) {
+    loop::TrainingProgress progress(name_ + ", posterior",
+                                    run_.recipe.posterior_epochs * run_.split.train.size(), quiet_);
+    return train_posterior(trained, run_, settings(name_ + "-posterior"), targets(), progress);
   }
   /// Returns the settings of a training; `curve`: name of its learning curve.
   [[nodiscard]] loop::LoopSettings settings(const std::string& curve) {
     loop::LoopSettings s;
-    s.recipe = recipe_;
+    s.recipe = run_.recipe;
     s.recipe.epochs = epochs();
-    s.seed = request_.seed;
+    s.seed = run_.request.seed;
     s.checkpoint = checkpoint_;
-    s.run = &identity_;
-    s.gflops = request_.runtime.gflops;
-    s.stop = request_.stop;
+    s.run = &run_.training_identity;
+    s.gflops = run_.request.runtime.gflops;
+    s.stop = run_.request.stop;
     s.ranks = &ranks_;
-    const bool drawn = request_.watch && curve == name_;
+    const bool drawn = run_.request.watch && curve == name_;
     s.epoch_done = [this, drawn,
-                    files = std::make_shared<loop::LearningCurveFiles>(request_.out / "curves", curve)](
+                    files = std::make_shared<loop::LearningCurveFiles>(run_.request.out / "curves", curve)](
                        const loop::LearningCurve& so_far) {
       files->write(so_far);
       if (drawn) progress_.chart(loop::learning_curve_chart(so_far));
@@ -333,61 +269,58 @@ class NetworkRun {
     return s;
   }
   [[nodiscard]] std::vector<float> targets_of_training() const {
-    std::vector<float> targets =
-        scaled_targets(stream_.labels(), scale_, split_, request_.shuffle_labels, request_.seed);
+    std::vector<float> all = targets();
     for (std::size_t i = 0; i < known_.raw.size(); ++i)
-      targets[i] -= static_cast<float>(scale_.scaled(known_.raw[i], i % known_.width));
-    return targets;
+      all[i] -= static_cast<float>(run_.scale.scaled(known_.raw[i], i % known_.width));
+    return all;
   }
-  void print_sizes() {
-    progress_.line(fmt::format(
-        "{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
-        split_.train.size(), split_.validation.size(), split_.test.size(), features_.channels(),
-        features_.length(), static_cast<double>(networks::parameter_count(*network_)) * 1e-6,
-        ranks_.size() > 1 ? fmt::format("{} ranks of {}", ranks_.size(), request_.runtime.sentence())
-                          : request_.runtime.sentence()));
+  void print_sizes(const Trained& trained) {
+    const runtime::Runtime& runtime = run_.request.runtime;
+    progress_.line(
+        fmt::format("{} training, {} validation, {} test rows; {} x {} inputs, {:.2f} million weights; {}",
+                    run_.split.train.size(), run_.split.validation.size(), run_.split.test.size(),
+                    trained.features.channels(), trained.features.length(),
+                    static_cast<double>(networks::parameter_count(*trained.network)) * 1e-6,
+                    ranks_.size() > 1 ? fmt::format("{} ranks of {}", ranks_.size(), runtime.sentence())
+                                      : runtime.sentence()));
   }
-  [[nodiscard]] std::vector<double> estimates(std::span<const std::uint64_t> rows) {
-    const auto out = loop::predict(*network_, stream_, features_, rows, known_.scaled);
-    return raw_outputs(out, scale_, stream_.dataset(), rows, known_);
+  /// Returns raw values clamped to the sampling box, which contains every truth.
+  [[nodiscard]] std::vector<double> estimates(const Trained& trained, std::span<const std::uint64_t> rows) {
+    const auto out = loop::predict(*trained.network, run_.stream, trained.features, rows, known_.scaled);
+    const data::TargetScale& scale = run_.scale;
+    const mpi::store::Dataset& d = run_.stream.dataset();
+    std::vector<double> raw(out.size());
+    const std::size_t p = scale.mean.size();
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const double value = known_.none() ? scale.raw(out[i], i % p)
+                                         : known_.raw[rows[i / p] * p + i % p] + out[i] * scale.unit[i % p];
+      raw[i] = std::clamp(value, d.parameter_low[i % p], d.parameter_high[i % p]);
+    }
+    return raw;
   }
 
-  const data::ShardStream& stream_;
-  const RunRequest& request_;
+  const PreparedRun& run_;
   const mpi::items::Ranks& ranks_;
-  const loop::TrainingRecipe& recipe_;
-  const data::RowSplit& split_;
-  const data::TargetScale& scale_;
   const Guesses known_;
   const std::string name_;
-  const json identity_;
   const std::filesystem::path checkpoint_;
+  const bool quiet_;
   loop::TrainingProgress progress_;
-  data::Features features_;
-  std::unique_ptr<networks::Network> network_;
-  std::unique_ptr<Posterior> posterior_ = std::make_unique<Posterior>();
-  loop::LoopReport report_;
 };
 
-}  // namespace
-
-namespace {
-
 /// Locks the run on rank 0. Returns false if its result exists already.
-bool begin(const RunRequest& r, const PreparedRun& prepared, std::optional<RunLock>& lock) {
-  if (already_done(prepared.file, prepared.identity)) return false;
-  const auto locks = r.out / "checkpoints";
-  make_folder(r.out);
+bool begin(const PreparedRun& run, const std::filesystem::path& result, std::optional<RunLock>& lock) {
+  if (already_done(result, run.identity)) return false;
+  const auto locks = run.request.out / "checkpoints";
+  make_folder(run.request.out);
   make_folder(locks);
   // Runs of other noise levels wait for their common network.
-  const std::chrono::seconds patience = r.experiment.training(r.preset, r.network).noise_levels
-                                            ? std::chrono::hours(12)
-                                            : std::chrono::seconds(5);
-  lock.emplace(
-      locks / (training_name(r) + ".lock"),
-      LockWords{"a second run", prepared.file.string(), "wait for it to end, or choose another --out"},
-      patience);
-  return !already_done(prepared.file, prepared.identity);
+  const std::chrono::seconds patience =
+      run.recipe.noise_levels ? std::chrono::hours(12) : std::chrono::seconds(5);
+  lock.emplace(locks / (training_name(run.request) + ".lock"),
+               LockWords{"a second run", result.string(), "wait for it to end, or choose another --out"},
+               patience);
+  return !already_done(result, run.identity);
 }
 
 }  // namespace
@@ -395,6 +328,7 @@ bool begin(const RunRequest& r, const PreparedRun& prepared, std::optional<RunLo
 RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   const mpi::items::OneProcess alone;
   const mpi::items::Ranks& ranks = r.ranks == nullptr ? alone : *r.ranks;
+  const std::filesystem::path result = r.out / (run_name(r) + ".json");
   std::optional<PreparedRun> prepared;
   std::optional<RunLock> lock;
   bool needed = false;
@@ -403,19 +337,20 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
     if (ranks.size() > 1 && direct::is_method(r.network))
       throw InputError({fmt::format("{} ranks for {}", ranks.size(), r.network), "mpirun",
                         "this method has no training that ranks could share", "start it without mpirun"});
-    const std::size_t batch = r.experiment.training(r.preset, r.network).batch;
+    const std::size_t batch = prepared->recipe.batch;
     if (static_cast<std::size_t>(ranks.size()) > batch)
       throw InputError({fmt::format("{} ranks", ranks.size()), "mpirun",
                         fmt::format("a batch has {} rows, and each rank needs one", batch),
                         "start fewer ranks, or raise batch in the experiment"});
-    if (ranks.rank() == 0) needed = begin(r, *prepared, lock);
+    if (ranks.rank() == 0) needed = begin(*prepared, result, lock);
   });
   if (ranks.from_first(needed ? 1 : 0) == 0) return RunOutcome::already_done;
-  if (direct::is_method(r.network)) return run_direct(stream, r, *prepared);
-  NetworkRun network(stream, r, ranks, *prepared);
-  if (!network.train()) return RunOutcome::stopped;
+  if (direct::is_method(r.network)) return run_direct(*prepared, result);
+  NetworkRun network(*prepared, ranks);
+  const std::optional<Trained> trained = network.train();
+  if (!trained) return RunOutcome::stopped;
   if (ranks.rank() != 0) return RunOutcome::done;
-  network.judge_to(prepared->file);
+  network.judge_to(result, *trained);
   lock->withdraw(true);
   return RunOutcome::done;
 }

@@ -43,21 +43,21 @@ double largest_input(const data::ShardStream& stream, const data::Features& feat
 
 /// Returns the parameters with bias and spread on the test rows, which are not used in training. In a fold
 /// they are those of the generator left out.
-json judged_parameters(const NetworkParts& parts, networks::Network& network) {
-  const mpi::store::Dataset& d = parts.stream.dataset();
-  const data::Labels& labels = parts.stream.labels();
+json judged_parameters(const PreparedRun& run, const Trained& trained) {
+  const mpi::store::Dataset& d = run.stream.dataset();
+  const data::Labels& labels = run.stream.labels();
   const std::size_t p = labels.parameters;
-  const std::vector<float> out =
-      loop::predict(network, parts.stream, parts.features, parts.split.test, {}, parts.stream.validation());
+  const std::vector<float> out = loop::predict(*trained.network, run.stream, trained.features, run.split.test,
+                                               {}, run.stream.validation());
   std::vector<double> sum(p), square(p);
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double estimate =
-        std::clamp(parts.scale.raw(out[i], i % p), d.parameter_low[i % p], d.parameter_high[i % p]);
-    const double error = estimate - labels.values[parts.split.test[i / p] * p + i % p];
+        std::clamp(run.scale.raw(out[i], i % p), d.parameter_low[i % p], d.parameter_high[i % p]);
+    const double error = estimate - labels.values[run.split.test[i / p] * p + i % p];
     sum[i % p] += error;
     square[i % p] += error * error;
   }
-  const auto rows = static_cast<double>(parts.split.test.size());
+  const auto rows = static_cast<double>(run.split.test.size());
   json list = json::array();
   for (std::size_t i = 0; i < p; ++i)
     list.push_back({{"name", d.parameter_names[i]},
@@ -67,9 +67,9 @@ json judged_parameters(const NetworkParts& parts, networks::Network& network) {
                     {"high", d.parameter_high[i]},
                     {"bias", sum[i] / rows},
                     {"spread", std::sqrt(square[i] / rows)},
-                    {"mean", parts.scale.mean[i]},
-                    {"scale", parts.scale.unit[i]},
-                    {"origin", parts.scale.origin[i]}});
+                    {"mean", run.scale.mean[i]},
+                    {"scale", run.scale.unit[i]},
+                    {"origin", run.scale.origin[i]}});
   return list;
 }
 
@@ -92,17 +92,17 @@ json swing_json(const data::InputSelection& s) {
           {"system_frequency_Hz", w.system_frequency}};
 }
 
-json header_of(const NetworkParts& parts, networks::Network& network) {
-  const mpi::store::Dataset& d = parts.stream.dataset();
-  const RunRequest& r = parts.request;
-  const data::InputSelection& s = parts.stream.selection();
-  const data::FeatureSizes sizes = parts.features.sizes();
+json header_of(const PreparedRun& run, const Trained& trained) {
+  const mpi::store::Dataset& d = run.stream.dataset();
+  const RunRequest& r = run.request;
+  const data::InputSelection& s = run.stream.selection();
+  const data::FeatureSizes sizes = trained.features.sizes();
   const auto start = mpi::store::config_numbers(d, "fault.start"),
              filter = mpi::store::config_numbers(d, "record.frequency");
-  return {{"run", parts.identity},
+  return {{"run", run.training_identity},
           {"name", run_name(r)},
           {"network", r.network},
-          {"kind", r.experiment.training(r.preset, r.network).kind},
+          {"kind", run.recipe.kind},
           {"machine_model", d.machine_model},
           {"dataset", {{"name", dataset_name(d)}, {"hash", d.hash}, {"config_hash", d.config_hash}}},
           {"software", d.software},
@@ -127,16 +127,16 @@ json header_of(const NetworkParts& parts, networks::Network& network) {
             {"seconds_as_steps", sizes.seconds_as_steps},
             {"regressed", sizes.regressed}}},
           {"training",
-           {{"epochs", parts.report.epochs},
-            {"best_epoch", parts.report.best_epoch},
-            {"seconds", parts.report.seconds},
-            {"validation_mse", parts.report.validation},
-            {"curve", loop::learning_curve_json(parts.report.curve)}}},
+           {{"epochs", trained.report.epochs},
+            {"best_epoch", trained.report.best_epoch},
+            {"seconds", trained.report.seconds},
+            {"validation_mse", trained.report.validation},
+            {"curve", loop::learning_curve_json(trained.report.curve)}}},
           {"physics", physics_json(s)},
           {"swing", swing_json(s)},
-          {"posterior", parts.posterior.head ? maps_json(parts.posterior) : json()},
-          {"input_rms_seen", largest_input(parts.stream, parts.features, parts.split.validation)},
-          {"parameters", judged_parameters(parts, network)}};
+          {"posterior", trained.posterior.head ? maps_json(trained.posterior) : json()},
+          {"input_rms_seen", largest_input(run.stream, trained.features, run.split.validation)},
+          {"parameters", judged_parameters(run, trained)}};
 }
 
 data::InputForm form_of(const std::string& name) {
@@ -212,9 +212,9 @@ fs::path find_file(const fs::path& path) {
 
 fs::path network_file(const fs::path& result) { return fs::path(result).replace_extension(".network"); }
 
-void save_network(const fs::path& file, const NetworkParts& parts, networks::Network& network) {
-  const json header = header_of(parts, network);
-  const auto features = parts.features.arrays();
+void save_network(const fs::path& file, const PreparedRun& run, const Trained& trained) {
+  const json header = header_of(run, trained);
+  const auto features = trained.features.arrays();
   std::vector<std::span<const float>> arrays(features.begin(), features.end());
   std::vector<at::Tensor> weights;
   const auto append = [&](networks::Network& of) {
@@ -223,12 +223,12 @@ void save_network(const fs::path& file, const NetworkParts& parts, networks::Net
       arrays.emplace_back(weights.back().data_ptr<float>(), static_cast<std::size_t>(weights.back().numel()));
     }
   };
-  append(network);
-  if (parts.posterior.head) append(*parts.posterior.head);
+  append(*trained.network);
+  if (trained.posterior.head) append(*trained.posterior.head);
   write_sealed(kNetwork, file, header, arrays);
 }
 
-SavedNetwork::SavedNetwork() : posterior_(std::make_unique<Posterior>()) {}
+SavedNetwork::SavedNetwork() : trained_(std::make_unique<Trained>()) {}
 SavedNetwork::SavedNetwork(SavedNetwork&&) noexcept = default;
 SavedNetwork& SavedNetwork::operator=(SavedNetwork&&) noexcept = default;
 SavedNetwork::~SavedNetwork() = default;
@@ -245,12 +245,13 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
     } catch (const json::exception& e) {
       throw Unusable{std::string("its header has another format: ") + e.what()};
     }
-    n.network_ = networks::make_network(n.info_.kind, shape_of(sizes, targets_of(n.info_, n.scale_)));
-    for (const auto& w : n.network_->parameters()) weights.push_back(w.detach());
+    n.trained_->network =
+        networks::make_network(n.info_.kind, shape_of(sizes, targets_of(n.info_, n.scale_)));
+    for (const auto& w : n.trained_->network->parameters()) weights.push_back(w.detach());
     if (!header.at("posterior").is_null()) {
-      n.posterior_->levels = maps_of(header.at("posterior"));
+      n.trained_->posterior.levels = maps_of(header.at("posterior"));
       n.add_head(sizes);
-      for (const auto& w : n.posterior_->head->parameters()) weights.push_back(w.detach());
+      for (const auto& w : n.trained_->posterior.head->parameters()) weights.push_back(w.detach());
     }
     features.resize(data::Features::array_count(sizes));
     if (arrays != features.size() + weights.size()) throw Unusable{"its number of arrays differs"};
@@ -266,14 +267,14 @@ SavedNetwork SavedNetwork::load(const fs::path& path) {
   };
   read_sealed(kNetwork, n.file_, start, place);
   try {
-    n.features_ = data::Features::restore(sizes, features);
+    n.trained_->features = data::Features::restore(sizes, features);
   } catch (const Unusable& e) {
     throw InputError({"network file cannot be used", n.file_.string(), e.why, kNetwork.remedy});
   }
   return n;
 }
 
-std::unique_ptr<Posterior> SavedNetwork::release_posterior() { return std::move(posterior_); }
+std::unique_ptr<Trained> SavedNetwork::release() { return std::move(trained_); }
 
 void SavedNetwork::add_head(const data::FeatureSizes& sizes) {
   mpi::store::Dataset box;
@@ -282,21 +283,21 @@ void SavedNetwork::add_head(const data::FeatureSizes& sizes) {
     box.parameter_high.push_back(p.high);
   }
   const networks::NetworkShape shape = shape_of(sizes, targets_of(info_, scale_));
-  posterior_->head =
-      make_head(*network_, box, scale_, static_cast<std::size_t>(shape.channels * shape.samples));
+  trained_->posterior.head =
+      make_head(*trained_->network, box, scale_, static_cast<std::size_t>(shape.channels * shape.samples));
 }
 
 data::FeatureSizes SavedNetwork::read_header(const json& h) {
   info_ = info_of(h);
   identity_ = std::make_unique<json>(h.at("run"));
   const json& training = h.at("training");
-  report_.finished = true;
-  training.at("epochs").get_to(report_.epochs);
-  training.at("best_epoch").get_to(report_.best_epoch);
-  training.at("seconds").get_to(report_.seconds);
-  training.at("validation_mse").get_to(report_.validation);
+  trained_->report.finished = true;
+  training.at("epochs").get_to(trained_->report.epochs);
+  training.at("best_epoch").get_to(trained_->report.best_epoch);
+  training.at("seconds").get_to(trained_->report.seconds);
+  training.at("validation_mse").get_to(trained_->report.validation);
   // Networks of earlier versions have no curve.
-  if (training.contains("curve")) report_.curve = loop::read_learning_curve(training["curve"]);
+  if (training.contains("curve")) trained_->report.curve = loop::read_learning_curve(training["curve"]);
   for (const auto& p : h.at("parameters")) {
     scale_.mean.push_back(p.at("mean"));
     scale_.unit.push_back(p.at("scale"));
@@ -339,13 +340,13 @@ Estimate SavedNetwork::estimate(std::span<const float> record, double noise, dou
   std::vector<float> series(selection_.values());
   selection_.apply(record.data(), info_.samples, noise, reactance, series.data());
   at::NoGradGuard no_gradients;
-  at::Tensor x = at::empty(
-      {1, static_cast<std::int64_t>(features_.channels()), static_cast<std::int64_t>(features_.length())},
-      at::kFloat);
-  features_.apply(series.data(), 1, x.data_ptr<float>());
+  at::Tensor x = at::empty({1, static_cast<std::int64_t>(trained_->features.channels()),
+                            static_cast<std::int64_t>(trained_->features.length())},
+                           at::kFloat);
+  trained_->features.apply(series.data(), 1, x.data_ptr<float>());
   Estimate e;
   e.input_rms = rms(x.data_ptr<float>(), static_cast<std::size_t>(x.numel()));
-  const at::Tensor y = network_->forward(x, nullptr).contiguous();
+  const at::Tensor y = trained_->network->forward(x, nullptr).contiguous();
   for (std::size_t i = 0; i < info_.parameters.size(); ++i)
     e.values.push_back(
         std::clamp(scale_.raw(y.data_ptr<float>()[i], i), info_.parameters[i].low, info_.parameters[i].high));
@@ -355,12 +356,12 @@ Estimate SavedNetwork::estimate(std::span<const float> record, double noise, dou
 
 void SavedNetwork::add_intervals(const at::Tensor& x, double noise, Estimate& e) const {
   e.intervals.resize(info_.parameters.size());
-  if (!posterior_->head) return;
-  posterior::Head& head = *posterior_->head;
+  if (!trained_->posterior.head) return;
+  posterior::Head& head = *trained_->posterior.head;
   const at::Tensor numbers = head.forward(x, nullptr).contiguous();
   const auto posteriors =
       head.posteriors({numbers.data_ptr<float>(), static_cast<std::size_t>(numbers.numel())});
-  const auto maps = maps_at(posterior_->levels, noise);
+  const auto maps = maps_at(trained_->posterior.levels, noise);
   for (std::size_t i = 0; i < head.of().size(); ++i) {
     const posterior::HeadParameter& p = head.of()[i];
     const auto at = [&](double below) {

@@ -50,23 +50,13 @@ struct Estimate {
   double input_rms = 0.0;  ///< of the normalised input: about 1 on rows like the training rows
 };
 
-struct Posterior;
-
-struct NetworkParts {
-  const data::ShardStream& stream;
-  const RunRequest& request;
-  const data::Features& features;
-  const data::TargetScale& scale;
-  const data::RowSplit& split;
-  const nlohmann::json& identity;  ///< of the training
-  const loop::LoopReport& report;
-  const Posterior& posterior;
-};
+struct PreparedRun;
+struct Trained;
 
 /// Returns "V-cnn-quick-seed1-gen30.network" beside the result.
 std::filesystem::path network_file(const std::filesystem::path& result);
 /// Evaluates the network on its test rows and writes it. Throws InputError if the file cannot be written.
-void save_network(const std::filesystem::path& file, const NetworkParts& parts, networks::Network& network);
+void save_network(const std::filesystem::path& file, const PreparedRun& run, const Trained& trained);
 
 class SavedNetwork {
  public:
@@ -78,13 +68,10 @@ class SavedNetwork {
   ~SavedNetwork();
   [[nodiscard]] const NetworkInfo& info() const { return info_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// Return identity and report of the training.
+  /// Returns the identity of the training.
   [[nodiscard]] const nlohmann::json& identity() const { return *identity_; }
-  [[nodiscard]] const loop::LoopReport& report() const { return report_; }
-  [[nodiscard]] const data::Features& features() const { return features_; }
-  /// Returns the network and gives up ownership; estimates are no longer possible.
-  [[nodiscard]] std::unique_ptr<networks::Network> release() { return std::move(network_); }
-  [[nodiscard]] std::unique_ptr<Posterior> release_posterior();
+  /// Returns the training's result and gives up ownership; estimates are no longer possible.
+  [[nodiscard]] std::unique_ptr<Trained> release();
   /// Returns the estimate of a record: info().channels x info().samples, at info().rate from t = 0 [units of
   /// a dataset's record]. `noise`: noise level of the record; used only by a network that was trained at many
   /// levels. `reactance`: X'd of the machine [pu], used only if the network needs it.
@@ -99,12 +86,9 @@ class SavedNetwork {
   std::filesystem::path file_;
   NetworkInfo info_;
   data::InputSelection selection_;
-  data::Features features_;
   data::TargetScale scale_;
-  std::unique_ptr<networks::Network> network_;
-  std::unique_ptr<Posterior> posterior_;
+  std::unique_ptr<Trained> trained_;
   std::unique_ptr<nlohmann::json> identity_;
-  loop::LoopReport report_;
 };
 
 }  // namespace swingbank::train::run

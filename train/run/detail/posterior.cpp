@@ -25,9 +25,9 @@ std::vector<std::uint64_t> some_of(const std::vector<std::uint64_t>& rows, std::
   return some;
 }
 
-std::vector<double> levels_of(const PosteriorContext& c) {
-  if (!c.recipe.noise_levels) return {c.stream.noise().level};
-  const data::NoiseLevels& range = *c.recipe.noise_levels;
+std::vector<double> levels_of(const PreparedRun& run) {
+  if (!run.recipe.noise_levels) return {run.stream.noise().level};
+  const data::NoiseLevels& range = *run.recipe.noise_levels;
   std::vector<double> all;
   if (range.share_at_zero > 0) all.push_back(0.0);
   for (std::size_t i = 0; i < kLevelsAboveZero; ++i)
@@ -45,9 +45,10 @@ std::vector<double> places_of(const posterior::Head& head, const data::Labels& l
   return head.places(raw, labels.parameters);
 }
 
-posterior::Posteriors posteriors_of(posterior::Head& head, const PosteriorContext& c,
+posterior::Posteriors posteriors_of(const Trained& trained, const PreparedRun& run,
                                     std::span<const std::uint64_t> rows, const data::Noise& noise) {
-  return head.posteriors(loop::predict(head, c.stream, c.features, rows, {}, noise));
+  posterior::Head& head = *trained.posterior.head;
+  return head.posteriors(loop::predict(head, run.stream, trained.features, rows, {}, noise));
 }
 
 /// Returns the rows of generators that did not train; if none was set aside, the validation rows.
@@ -55,12 +56,13 @@ const std::vector<std::uint64_t>& calibration_rows(const data::RowSplit& split) 
   return split.calibration.empty() ? split.validation : split.calibration;
 }
 
-LevelMaps calibrate(posterior::Head& head, const PosteriorContext& c, double level,
+LevelMaps calibrate(const Trained& trained, const PreparedRun& run, double level,
                     std::span<const std::uint64_t> rows) {
   const data::Noise noise =
-      c.stream.noise().training ? data::Noise{level, kCalibrationDraw} : c.stream.judged();
-  const posterior::Posteriors posteriors = posteriors_of(head, c, rows, noise);
-  const std::vector<double> scores = posterior::scores(posteriors, places_of(head, c.stream.labels(), rows));
+      run.stream.noise().training ? data::Noise{level, kCalibrationDraw} : run.stream.judged();
+  const posterior::Posteriors posteriors = posteriors_of(trained, run, rows, noise);
+  const std::vector<double> scores =
+      posterior::scores(posteriors, places_of(*trained.posterior.head, run.stream.labels(), rows));
   LevelMaps all{level, {}};
   for (std::size_t p = 0; p < posteriors.parameters; ++p) {
     std::vector<double> own;
@@ -78,14 +80,14 @@ json ranks_json(const posterior::Ranks& r) {
           {"largest_distance", r.largest_distance()}};
 }
 
-json coverage_json(const posterior::Coverage& c, const PosteriorContext& context, const posterior::Head& head,
+json coverage_json(const posterior::Coverage& c, const PreparedRun& run, const posterior::Head& head,
                    std::size_t rows) {
   using posterior::ParameterCoverage;
   json each = json::array();
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
     const ParameterCoverage& p = c.parameters[i];
     const posterior::HeadParameter& of = head.of()[i];
-    each.push_back({{"name", context.stream.dataset().parameter_names[of.output]},
+    each.push_back({{"name", run.stream.dataset().parameter_names[of.output]},
                     {"coverage_50", p.within_50},
                     {"coverage_90", p.within_90},
                     {"width_50", p.width_50 * (of.high - of.low)},
@@ -101,21 +103,22 @@ json coverage_json(const posterior::Coverage& c, const PosteriorContext& context
           {"tarp", ranks_json(c.tarp)}};
 }
 
-json judged_on(const Posterior& posterior, const PosteriorContext& c, std::span<const std::uint64_t> rows,
+json judged_on(const Trained& trained, const PreparedRun& run, std::span<const std::uint64_t> rows,
                const std::vector<posterior::Recalibration>& maps) {
-  const posterior::Posteriors posteriors = posteriors_of(*posterior.head, c, rows, c.stream.judged());
+  const posterior::Posteriors posteriors = posteriors_of(trained, run, rows, run.stream.judged());
+  const posterior::Head& head = *trained.posterior.head;
   const auto found =
-      posterior::coverage(posteriors, maps, places_of(*posterior.head, c.stream.labels(), rows), c.seed);
-  return coverage_json(found, c, *posterior.head, rows.size());
+      posterior::coverage(posteriors, maps, places_of(head, run.stream.labels(), rows), run.request.seed);
+  return coverage_json(found, run, head, rows.size());
 }
 
 /// Returns the left-out generator's rows in the training dataset.
-std::vector<std::uint64_t> other_rows(const PosteriorContext& c) {
-  const data::Labels& labels = c.stream.labels();
+std::vector<std::uint64_t> other_rows(const PreparedRun& run) {
+  const data::Labels& labels = run.stream.labels();
   std::vector<std::uint64_t> rows;
-  const std::int32_t left_out = labels.generator[c.split.test.front()];
+  const std::int32_t left_out = labels.generator[run.split.test.front()];
   for (std::uint64_t row = labels.judged; row < labels.rows; ++row)
-    if (!c.split.set_aside.empty() && labels.generator[row] == left_out) rows.push_back(row);
+    if (!run.split.set_aside.empty() && labels.generator[row] == left_out) rows.push_back(row);
   return rows;
 }
 
@@ -143,45 +146,45 @@ std::unique_ptr<posterior::Head> make_head(networks::Network& network, const mpi
   return std::make_unique<posterior::Head>(network, static_cast<std::int64_t>(inputs), std::move(all));
 }
 
-bool train_posterior(Posterior& posterior, networks::Network& network, const PosteriorContext& c,
-                     loop::LoopSettings settings, std::span<const float> targets,
-                     loop::TrainingProgress& progress) {
-  loop::seed_torch(data::key(c.seed, data::Purpose::weights, 1));
+bool train_posterior(Trained& trained, const PreparedRun& run, loop::LoopSettings settings,
+                     std::span<const float> targets, loop::TrainingProgress& progress) {
+  loop::seed_torch(data::key(run.request.seed, data::Purpose::weights, 1));
+  const data::Features& features = trained.features;
+  Posterior& posterior = trained.posterior;
   posterior.head =
-      make_head(network, c.stream.dataset(), c.scale, c.features.channels() * c.features.length());
-  settings.recipe.epochs = settings.recipe.patience = c.recipe.posterior_epochs;
+      make_head(*trained.network, run.stream.dataset(), run.scale, features.channels() * features.length());
+  settings.recipe.epochs = settings.recipe.patience = run.recipe.posterior_epochs;
   settings.checkpoint.replace_extension(".posterior.checkpoint");
   settings.first_draw = kPosteriorDraws;
   settings.gflops = 0.0;
   progress.line("losses are negative log densities per parameter");
   const auto* head = posterior.head.get();
-  loop::LoopData data{c.stream, c.features, c.split.train, c.split.validation, targets};
+  loop::LoopData data{run.stream, features, run.split.train, run.split.validation, targets};
   data.loss = [head](const at::Tensor& numbers, const at::Tensor& of) { return head->loss(numbers, of); };
   if (!loop::train_network(*posterior.head, data, settings, progress).finished) return false;
-  const auto rows = some_of(calibration_rows(c.split), kCalibrationRows);
-  for (const double level : levels_of(c))
-    posterior.levels.push_back(calibrate(*posterior.head, c, level, rows));
+  const auto rows = some_of(calibration_rows(run.split), kCalibrationRows);
+  for (const double level : levels_of(run)) posterior.levels.push_back(calibrate(trained, run, level, rows));
   return true;
 }
 
-json judge_posterior(const Posterior& posterior, const PosteriorContext& c) {
-  const auto maps = maps_at(posterior.levels, c.stream.noise().level);
+json judge_posterior(const PreparedRun& run, const Trained& trained) {
+  const auto maps = maps_at(trained.posterior.levels, run.stream.noise().level);
   const std::vector<posterior::Recalibration> none(maps.size());
-  json all = {{"set_aside", c.split.set_aside},
-              {"calibration_rows", std::min(calibration_rows(c.split).size(), kCalibrationRows)},
-              {"test", judged_on(posterior, c, c.split.test, maps)},
-              {"test_not_recalibrated", judged_on(posterior, c, c.split.test, none)}};
-  const auto others = some_of(other_rows(c), kOtherRows);
-  if (!others.empty()) all["other_operating_points"] = judged_on(posterior, c, others, maps);
+  json all = {{"set_aside", run.split.set_aside},
+              {"calibration_rows", std::min(calibration_rows(run.split).size(), kCalibrationRows)},
+              {"test", judged_on(trained, run, run.split.test, maps)},
+              {"test_not_recalibrated", judged_on(trained, run, run.split.test, none)}};
+  const auto others = some_of(other_rows(run), kOtherRows);
+  if (!others.empty()) all["other_operating_points"] = judged_on(trained, run, others, maps);
   return all;
 }
 
 std::function<std::vector<double>(std::span<const std::size_t>)> product_of_posteriors(
-    const Posterior& posterior, const PosteriorContext& c) {
+    const PreparedRun& run, const Trained& trained) {
   const auto posteriors = std::make_shared<posterior::Posteriors>(
-      posteriors_of(*posterior.head, c, c.split.test, c.stream.judged()));
-  const mpi::store::Dataset& d = c.stream.dataset();
-  return [posteriors, &d, head = posterior.head.get()](std::span<const std::size_t> rows) {
+      posteriors_of(trained, run, run.split.test, run.stream.judged()));
+  const mpi::store::Dataset& d = run.stream.dataset();
+  return [posteriors, &d, head = trained.posterior.head.get()](std::span<const std::size_t> rows) {
     std::vector<double> all;
     for (std::size_t p = 0; p < d.parameter_low.size(); ++p)
       all.push_back(0.5 * (d.parameter_low[p] + d.parameter_high[p]));

@@ -1,6 +1,6 @@
 #pragma once
-// Posterior of a run: training of the head, recalibration at each noise level on rows that did not train, and
-// calibration checks on the test rows.
+// Trained network with its posterior: training of the head, recalibration at each noise level on rows that
+// did not train, and calibration checks on the test rows.
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -10,7 +10,7 @@
 #include "train/loop/loop.hpp"
 #include "train/posterior/coverage.hpp"
 #include "train/posterior/head.hpp"
-#include "train/run/run.hpp"
+#include "train/run/detail/prepare.hpp"
 
 namespace swingbank::train::run {
 
@@ -28,31 +28,28 @@ struct Posterior {
   std::vector<LevelMaps> levels;          ///< ascending
 };
 
-/// Inputs of training and checking a posterior.
-struct PosteriorContext {
-  const data::ShardStream& stream;
-  const data::Features& features;
-  const data::TargetScale& scale;
-  const data::RowSplit& split;
-  const loop::TrainingRecipe& recipe;
-  std::uint64_t seed = 1;
+/// Result of a training.
+struct Trained {
+  data::Features features;
+  std::unique_ptr<networks::Network> network;
+  Posterior posterior;
+  loop::LoopReport report;
 };
 
 /// Creates an untrained head. Throws InputError if the network provides no features.
 std::unique_ptr<posterior::Head> make_head(networks::Network& network, const mpi::store::Dataset& dataset,
                                            const data::TargetScale& scale, std::size_t inputs);
 /// Trains and recalibrates the head. Returns false if it was stopped, after a checkpoint.
-bool train_posterior(Posterior& posterior, networks::Network& network, const PosteriorContext& context,
-                     loop::LoopSettings settings, std::span<const float> targets,
-                     loop::TrainingProgress& progress);
+bool train_posterior(Trained& trained, const PreparedRun& run, loop::LoopSettings settings,
+                     std::span<const float> targets, loop::TrainingProgress& progress);
 /// Returns coverage, ranks and widths for the result file, on the test rows and on the same generator's rows
 /// that never train.
-nlohmann::json judge_posterior(const Posterior& posterior, const PosteriorContext& context);
+nlohmann::json judge_posterior(const PreparedRun& run, const Trained& trained);
 
 /// Returns a function that estimates a plant's parameters [raw units] from several test rows by the product
 /// of their posteriors. Constant parameters are at the middle of their box.
 std::function<std::vector<double>(std::span<const std::size_t>)> product_of_posteriors(
-    const Posterior& posterior, const PosteriorContext& context);
+    const PreparedRun& run, const Trained& trained);
 
 /// Convert the maps to JSON for the network file, and back. Throw nlohmann::json's exceptions.
 nlohmann::json maps_json(const Posterior& posterior);

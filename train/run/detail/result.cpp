@@ -77,17 +77,9 @@ json identity(const data::ShardStream& stream, const RunRequest& r) {
   return all;
 }
 
-json training_identity(const data::ShardStream& stream, const RunRequest& r) {
-  json all = identity(stream, r);
-  if (!r.experiment.training(r.preset, r.network).noise_levels) return all;
-  all.erase("noise");
-  all.erase("judged_rows");
-  return all;
-}
-
-json result_json(const data::ShardStream& stream, const RunRequest& r, const RunParts& parts) {
-  const mpi::store::Dataset& d = stream.dataset();
-  const loop::TrainingRecipe& t = r.experiment.training(r.preset, r.network);
+json result_json(const PreparedRun& run, const RunParts& parts) {
+  const RunRequest& r = run.request;
+  const mpi::store::Dataset& d = run.stream.dataset();
   json parameters = json::array();
   for (const auto& p : parts.score.parameters)
     parameters.push_back({{"name", p.name},
@@ -111,9 +103,9 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
       {"machine_model", d.machine_model},
       {"parameters", d.parameter_names},
       {"train_share", r.train_share},
-      {"train_rows", parts.split.train.size()},
-      {"validation_rows", parts.split.validation.size()},
-      {"test_rows", parts.split.test.size()},
+      {"train_rows", run.split.train.size()},
+      {"validation_rows", run.split.validation.size()},
+      {"test_rows", run.split.test.size()},
       {"epochs", parts.report.epochs},
       {"best_epoch", parts.report.best_epoch},
       {"seconds", parts.report.seconds},
@@ -134,12 +126,12 @@ json result_json(const data::ShardStream& stream, const RunRequest& r, const Run
       {"blas", r.runtime.blas},
       {"kernels", kernels(r)},
       {"software", software()},
-      {"input", parts.features ? input_json(stream, r, *parts.features) : json()},
-      {"batch", t.batch},
-      {"learning_rate", t.learning_rate},
+      {"input", parts.features ? input_json(run.stream, r, *parts.features) : json()},
+      {"batch", run.recipe.batch},
+      {"learning_rate", run.recipe.learning_rate},
       {"validation_mse", parts.report.validation},
       {"curve", loop::learning_curve_json(parts.report.curve)},
-      {"run", identity(stream, r)}};
+      {"run", run.identity}};
   if (!parts.posterior.is_null()) result["posterior"] = parts.posterior;
   if (!parts.several.is_null()) result["several"] = parts.several;
   return result;

@@ -2,7 +2,7 @@
 // JSON result of one run; train/run/README.md lists its keys.
 
 #include "base/json.hpp"
-#include "train/run/run.hpp"
+#include "train/run/detail/prepare.hpp"
 
 namespace swingbank::train::run {
 
@@ -13,12 +13,7 @@ std::string dataset_name(const mpi::store::Dataset& dataset);
 /// kernels. Checkpoints and results with another identity do not belong to the run.
 nlohmann::json identity(const data::ShardStream& stream, const RunRequest& request);
 
-/// Returns the identity of a run's training. A network trained at many noise levels serves the runs of all
-/// levels.
-nlohmann::json training_identity(const data::ShardStream& stream, const RunRequest& request);
-
 struct RunParts {
-  const data::RowSplit& split;
   const data::Features* features;  ///< nullptr: no training
   const loop::LoopReport& report;
   const loop::Score& score;
@@ -26,6 +21,6 @@ struct RunParts {
   nlohmann::json posterior = {};        ///< null: no posterior
   nlohmann::json several = {};          ///< null: no such plants
 };
-nlohmann::json result_json(const data::ShardStream& stream, const RunRequest& request, const RunParts& parts);
+nlohmann::json result_json(const PreparedRun& run, const RunParts& parts);
 
 }  // namespace swingbank::train::run

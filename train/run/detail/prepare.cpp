@@ -1,0 +1,56 @@
+#include "train/run/detail/prepare.hpp"
+
+#include <algorithm>
+
+#include "base/problem.hpp"
+#include "train/direct/direct.hpp"
+#include "train/run/detail/result.hpp"
+
+namespace swingbank::train::run {
+namespace {
+
+/// Keeps about `wanted` rows, evenly spaced.
+void thin(std::vector<std::uint64_t>& rows, std::size_t wanted) {
+  const std::size_t every = std::max<std::size_t>(1, rows.size() / wanted);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rows.size(); i += every) rows[kept++] = rows[i];
+  rows.resize(kept);
+}
+
+/// Throws if a method needs complete records but the dataset is not on disk.
+void require_records(const data::ShardStream& stream, const RunRequest& r) {
+  const bool reads =
+      direct::is_method(r.network) || !r.experiment.training(r.preset, r.network).corrects.empty();
+  if (reads && stream.from_memory())
+    throw InputError({"network " + r.network, "--simulate",
+                      "it reads whole records, which training from memory does not keep",
+                      "generate the dataset on a disk, or choose a network that reads series alone"});
+}
+
+data::RowSplit split_of(const data::Labels& labels, const RunRequest& r) {
+  const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
+  data::RowSplit split = r.generator ? data::leave_one_out(labels, {*r.generator, recipe.validation_share,
+                                                                    r.seed, r.judged, recipe.set_aside})
+                         : r.experiment.across ? data::split_across(labels, recipe.validation_share, r.seed)
+                                               : data::split_by_point(labels, r.seed);
+  if (r.test_rows) thin(split.test, *r.test_rows);
+  if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
+  return split;
+}
+
+}  // namespace
+
+PreparedRun prepare(const data::ShardStream& stream, const RunRequest& r) {
+  require_records(stream, r);
+  const data::Labels& labels = stream.labels();
+  const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
+  nlohmann::json whole = identity(stream, r), training = whole;
+  if (recipe.noise_levels)
+    for (const char* judging : {"noise", "judged_rows"}) training.erase(judging);
+  data::RowSplit split = split_of(labels, r);
+  data::TargetScale scale =
+      data::TargetScale::fit(labels.values, labels.parameters, split.train, stream.dataset().parameter_low);
+  return {stream, r, recipe, std::move(whole), std::move(training), std::move(split), std::move(scale)};
+}
+
+}  // namespace swingbank::train::run

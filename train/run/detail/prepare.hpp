@@ -1,0 +1,24 @@
+#pragma once
+// A run before any work, as values: identity, split and scale of the targets.
+#include "base/json.hpp"
+#include "train/run/run.hpp"
+
+namespace swingbank::train::run {
+
+/// What a request determines before any work.
+struct PreparedRun {
+  const data::ShardStream& stream;
+  const RunRequest& request;
+  const loop::TrainingRecipe& recipe;
+  nlohmann::json identity;  ///< two runs with equal identities give the same result
+  /// Identity of the training. A network trained at many noise levels serves the runs of all levels.
+  nlohmann::json training_identity;
+  data::RowSplit split;
+  data::TargetScale scale;  ///< of the targets
+};
+
+/// Splits the rows and fits the scale of the targets. Throws InputError if a method needs complete records
+/// but the dataset is not on disk.
+PreparedRun prepare(const data::ShardStream& stream, const RunRequest& request);
+
+}  // namespace swingbank::train::run
