@@ -6,6 +6,7 @@
 #include "base/inputs_kept.hpp"
 #include "base/write_file.hpp"
 #include "jobs/command_line.hpp"
+#include "sim/grid/case_words.hpp"
 #include "validate/plant/plant_file.hpp"
 
 namespace swingbank::jobs::plant_command {
@@ -86,7 +87,7 @@ int run(CommandLine& line, int argc, char** argv) {
            "OLD=NEW: a model of the unit read as another: with its values if both have the same "
            "number of parameters, else with the other's default values; may be repeated")
       .one_value_a_mention();
-  line.add_choice("--complete-records", a.complete_records, {"no", "zero", "standard"},
+  line.add_choice("--complete-records", a.complete_records, sim::grid::kLackingWords,
                   "records that are shorter than their model are completed with these values, longer ones "
                   "are truncated; each value is named");
   line.group("Input");

@@ -17,6 +17,7 @@
 #include "sim/batch/batch.hpp"
 #include "sim/formats/event_text.hpp"
 #include "sim/grid/attach.hpp"
+#include "sim/grid/case_words.hpp"
 #include "sim/grid/event_choice.hpp"
 #include "sim/grid/limits.hpp"
 #include "sim/grid/load_choice.hpp"
@@ -40,7 +41,7 @@ struct Options {
   std::optional<double> tolerance, frequency_hz;
   std::vector<std::string> ignore_models, map_models;
   bool after_switching = false, net_generators = false, widen_limits = false, drop_refused = false;
-  std::string complete_records = "no", devices = "checked", repeated = "refuse";
+  int complete_records = 0, devices = 0, repeated = 0;  // places of the words
   int raw_version = 0;
   std::string start = "solved", q_limits = "enforce", switched_shunts = "fixed";
   std::filesystem::path changes;
@@ -282,16 +283,10 @@ grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& mode
   grid::CaseOptions all;
   all.dyr = models;
   all.raw = {o.frequency_hz, o.raw_version};
-  all.raw.devices = o.devices == "none"   ? network::DeviceReplacement::none
-                    : o.devices == "file" ? network::DeviceReplacement::file
-                                          : network::DeviceReplacement::checked;
-  all.complete_records = o.complete_records == "zero"       ? grid::Lacking::zero
-                         : o.complete_records == "standard" ? grid::Lacking::standard
-                                                            : grid::Lacking::refused;
+  all.raw.devices = static_cast<network::DeviceReplacement>(o.devices);
+  all.complete_records = static_cast<grid::Lacking>(o.complete_records);
   all.drop_refused = all.raw.drop_refused = o.drop_refused;
-  all.raw.repeated = o.repeated == "keep"       ? formats::Repeated::kept
-                     : o.repeated == "voltages" ? formats::Repeated::voltages
-                                                : formats::Repeated::refused;
+  all.raw.repeated = static_cast<formats::Repeated>(o.repeated);
   all.net_generators = o.net_generators;
   all.start_from_file = o.start == "file";
   all.flow.reactive_limits = o.q_limits == "enforce";
@@ -408,11 +403,9 @@ int run(CommandLine& line, int argc, char** argv) {
           "fixed: switched shunts stay at BINIT; step: those in discrete steps hold their voltage in the power flow")
       .one_of({"fixed", "step"})
       .shows_default();
-  line.add("--devices", o.devices,
-           "power of dc lines, FACTS and GNE devices and induction machines: from the file's "
-           "voltages, if these are a solution (checked) or always (file), or zero (none)")
-      .one_of({"checked", "file", "none"})
-      .shows_default();
+  line.add_choice("--devices", o.devices, grid::kDeviceWords,
+                  "power of dc lines, FACTS and GNE devices and induction machines: from the file's "
+                  "voltages, if these are a solution (checked) or always (file), or zero (none)");
   line.add("--loads", o.load_model,
            "impedance: every load at constant impedance; raw: as the .raw composes it of constant "
            "power, current and admittance; those with a model in the .dyr keep it")
@@ -422,20 +415,16 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add_flag("--widen-limits", o.widen_limits,
                 "where the operating point lies beyond a control's limit, move the limit there and name it");
   line.group("Models");
-  line.add("--complete-records", o.complete_records,
-           "records of the .dyr that are shorter than their model are completed with these values, "
-           "longer ones are truncated; each is named")
-      .one_of({"no", "zero", "standard"})
-      .shows_default();
+  line.add_choice("--complete-records", o.complete_records, grid::kLackingWords,
+                  "records of the .dyr that are shorter than their model are completed with these values, "
+                  "longer ones are truncated; each is named");
   line.add_flag("--drop-refused", o.drop_refused,
                 "records of the .dyr whose values their model cannot take are left out, and equipment of the "
                 "network that appears a second time or at a bus that is missing; each is named");
-  line.add(
-          "--repeated", o.repeated,
-          "equipment of the network that appears a second time: refused, kept under a new id (keep), or kept "
-          "only where the file's voltages show it (voltages)")
-      .one_of({"refuse", "keep", "voltages"})
-      .shows_default();
+  line.add_choice(
+      "--repeated", o.repeated, grid::kRepeatedWords,
+      "equipment of the network that appears a second time: refused, kept under a new id (keep), or kept "
+      "only where the file's voltages show it (voltages)");
   line.add("--ignore-model", o.ignore_models,
            "names of .dyr models to leave out, comma-separated; may be repeated")
       .comma_separated();

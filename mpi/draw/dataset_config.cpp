@@ -10,6 +10,7 @@
 #include "base/config.hpp"
 #include "base/describe.hpp"
 #include "sim/grid/attach.hpp"
+#include "sim/grid/case_words.hpp"
 #include "sim/user_models/user_model.hpp"
 
 namespace swingbank::mpi::draw {
@@ -148,28 +149,31 @@ std::vector<T> repeated(std::vector<T> list) {
   return found;
 }
 
-CaseConfig read_mend(Config& c) {
-  CaseConfig mend;
-  mend.raw_version = static_cast<int>(c.optional<std::int64_t>(
+void read_case(Config& c, DatasetConfig& d) {
+  sim::grid::CaseOptions& o = d.grid_case;
+  o.dyr = sim::formats::read_dyr_options(c, "");
+  if (c.has("frequency_hz"))
+    o.raw.frequency_hz =
+        c.require<double>("frequency_hz", {1.0, 1000.0, "Hz", "nominal frequency, for a network in .m"});
+  o.raw.version = static_cast<int>(c.optional<std::int64_t>(
       "raw_version", 0, {0.0, 35.0, "", "version of the .raw; 0: as its head says"}));
-  mend.net_generators = c.optional<bool>(
+  o.net_generators = c.optional<bool>(
       "net_generators", false, {.meaning = "generators without a machine model become negative loads"});
-  mend.widen_limits = c.optional<bool>("widen_limits", false,
-                                       {.meaning = "limits that the operating point violates are widened"});
-  mend.start_from_file =
-      c.choice("start", {"solved", "file"}, "solved",
-               {.meaning = "operating point: power flow, or voltages of the file"}) == "file";
-  mend.reactive_limits = c.choice("q_limits", {"enforce", "ignore"}, "enforce",
-                                  {.meaning = "limits of reactive power in the power flow"}) == "enforce";
-  mend.drop_refused =
+  d.widen_limits = c.optional<bool>("widen_limits", false,
+                                    {.meaning = "limits that the operating point violates are widened"});
+  o.start_from_file = c.choice("start", {"solved", "file"}, "solved",
+                               {.meaning = "operating point: power flow, or voltages of the file"}) == "file";
+  o.flow.reactive_limits = c.choice("q_limits", {"enforce", "ignore"}, "enforce",
+                                    {.meaning = "limits of reactive power in the power flow"}) == "enforce";
+  o.drop_refused = o.raw.drop_refused =
       c.optional<bool>("drop_refused", false, {.meaning = "leave out models that cannot be initialised"});
-  mend.repeated = c.choice("repeated", {"refuse", "keep", "voltages"}, "refuse",
-                           {.meaning = "repeated records of the .raw"});
-  mend.complete_records = c.choice("complete_records", {"no", "zero", "standard"}, "no",
-                                   {.meaning = "completion of records that are shorter than their model"});
-  mend.devices = c.choice("devices", {"checked", "file", "none"}, "checked",
-                          {.meaning = "voltage regulation by devices of the network"});
-  return mend;
+  o.raw.repeated = sim::grid::choose(c, "repeated", sim::grid::kRepeatedWords, o.raw.repeated,
+                                     {.meaning = "repeated records of the .raw"});
+  o.complete_records =
+      sim::grid::choose(c, "complete_records", sim::grid::kLackingWords, o.complete_records,
+                        {.meaning = "completion of records that are shorter than their model"});
+  o.raw.devices = sim::grid::choose(c, "devices", sim::grid::kDeviceWords, o.raw.devices,
+                                    {.meaning = "voltage regulation by devices of the network"});
 }
 
 void read_vary(Config& c, DatasetConfig& d) {
@@ -391,11 +395,7 @@ DatasetConfig read_values(Config& c, std::optional<double>& megabytes) {
   d.file = c.name();
   d.raw = c.file("raw", {.meaning = "network (.raw or .m), beside this file"});
   d.dyr = c.file("dyr", {.meaning = "dynamic models, beside this file"});
-  d.models = sim::formats::read_dyr_options(c, "");
-  if (c.has("frequency_hz"))
-    d.frequency_hz =
-        c.require<double>("frequency_hz", {1.0, 1000.0, "Hz", "nominal frequency, for a network in .m"});
-  d.mend = read_mend(c);
+  read_case(c, d);
   d.psse = c.choice("convention", {"psse", "andes"},
                     Range{.meaning = "psse: governors set power; andes: torque"}) != "andes";
   d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", count("events to simulate")));

@@ -72,14 +72,6 @@ struct OperatingPointConfig {
   [[nodiscard]] bool draws_bases() const { return loading_high > 0.0; }
 };
 
-/// Treatment of an incomplete case; the options of `simulate` have the same names.
-struct CaseConfig {
-  int raw_version = 0;
-  bool net_generators = false, widen_limits = false;
-  bool start_from_file = false, reactive_limits = true, drop_refused = false;
-  std::string complete_records = "no", devices = "checked", repeated = "refuse";
-};
-
 /// Command-line options that replace values of the config.
 struct Overrides {
   std::optional<std::uint64_t> draws = {}, seed = {}, draws_per_shard = {}, faults_per_point = {};
@@ -91,11 +83,10 @@ struct Overrides {
 /// Values of a dataset's config.
 struct DatasetConfig {
   std::filesystem::path file, raw, dyr;
-  Overrides overrides;                 ///< as given; the other members already contain them
-  bool psse = true;                    ///< convention of PSS/E, else of ANDES
-  sim::formats::DyrOptions models;     ///< .dyr models to omit or to read as others
-  std::optional<double> frequency_hz;  ///< nominal frequency [Hz], required for a MATPOWER case
-  CaseConfig mend;                     ///< treatment of an incomplete raw or dyr
+  Overrides overrides;               ///< as given; the other members already contain them
+  bool psse = true;                  ///< convention of PSS/E, else of ANDES
+  sim::grid::CaseOptions grid_case;  ///< treatment of an incomplete raw or dyr, as by `simulate`
+  bool widen_limits = false;         ///< limits that the operating point violates are widened
   Vary vary = Vary::one;
   std::vector<int> generators;   ///< bus numbers of the machines that vary
   std::vector<std::string> ids;  ///< unit at each bus; "": the only one; empty list: "" for all

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "mpi/draw/dataset_config.hpp"
+#include "sim/grid/case_words.hpp"
 
 namespace swingbank::mpi::draw {
 
@@ -68,18 +69,22 @@ std::string DatasetConfig::canonical() const {
     text += fmt::format("{} = {}\n", key, value);
   };
   // Optional keys at their defaults give no line, so that older configs keep their hash.
-  if (!models.ignore.empty()) line("ignore_models", models.ignore);
-  for (const auto& [from, to] : models.map) line("map_models", from + "=" + to);
-  if (frequency_hz) line("frequency_hz", *frequency_hz);
-  if (mend.raw_version != 0) line("raw_version", mend.raw_version);
-  if (mend.net_generators) line("net_generators", true);
-  if (mend.widen_limits) line("widen_limits", true);
-  if (mend.start_from_file) line("start", "file");
-  if (!mend.reactive_limits) line("q_limits", "ignore");
-  if (mend.drop_refused) line("drop_refused", true);
-  if (mend.repeated != "refuse") line("repeated", mend.repeated);
-  if (mend.complete_records != "no") line("complete_records", mend.complete_records);
-  if (mend.devices != "checked") line("devices", mend.devices);
+  const sim::grid::CaseOptions& o = grid_case;
+  const auto choice = [&](std::string_view key, const std::vector<std::string>& words, auto chosen) {
+    if (const auto at = static_cast<std::size_t>(chosen); at > 0) line(key, words[at]);
+  };
+  if (!o.dyr.ignore.empty()) line("ignore_models", o.dyr.ignore);
+  for (const auto& [from, to] : o.dyr.map) line("map_models", from + "=" + to);
+  if (o.raw.frequency_hz) line("frequency_hz", *o.raw.frequency_hz);
+  if (o.raw.version != 0) line("raw_version", o.raw.version);
+  if (o.net_generators) line("net_generators", true);
+  if (widen_limits) line("widen_limits", true);
+  if (o.start_from_file) line("start", "file");
+  if (!o.flow.reactive_limits) line("q_limits", "ignore");
+  if (o.drop_refused) line("drop_refused", true);
+  choice("repeated", sim::grid::kRepeatedWords, o.raw.repeated);
+  choice("complete_records", sim::grid::kLackingWords, o.complete_records);
+  choice("devices", sim::grid::kDeviceWords, o.raw.devices);
   for (const auto& a : attachments) line("attach", written(a));
   line("convention", psse ? "psse" : "andes");
   line("draws", draws);

@@ -14,42 +14,17 @@ namespace swingbank::mpi::draw {
 
 namespace fs = std::filesystem;
 
-namespace {
-sim::grid::CaseOptions case_options(const DatasetConfig& config) {
-  using sim::grid::Lacking;
-  using sim::network::DeviceReplacement;
-  const CaseConfig& mend = config.mend;
-  sim::grid::CaseOptions options;
-  options.dyr = config.models;
-  options.raw = {config.frequency_hz, mend.raw_version};
-  options.raw.devices = mend.devices == "none"   ? DeviceReplacement::none
-                        : mend.devices == "file" ? DeviceReplacement::file
-                                                 : DeviceReplacement::checked;
-  options.net_generators = mend.net_generators;
-  options.complete_records = mend.complete_records == "zero"       ? Lacking::zero
-                             : mend.complete_records == "standard" ? Lacking::standard
-                                                                   : Lacking::refused;
-  options.drop_refused = options.raw.drop_refused = mend.drop_refused;
-  options.raw.repeated = mend.repeated == "keep"       ? sim::formats::Repeated::kept
-                         : mend.repeated == "voltages" ? sim::formats::Repeated::voltages
-                                                       : sim::formats::Repeated::refused;
-  options.start_from_file = mend.start_from_file;
-  options.flow.reactive_limits = mend.reactive_limits;
-  return options;
-}
-}  // namespace
-
 Study load_study(const DatasetConfig& config) {
   Study s{config, {}, {}, {}};
   s.grid = sim::grid::load_grid(config.raw, config.dyr,
                                 config.psse ? sim::Conventions::psse() : sim::Conventions::andes(),
-                                case_options(config));
+                                config.grid_case);
   const auto& network = s.grid.network;
   s.grid.conventions.frequency = network.frequency;
   s.grid.library = config.library;
   Problems problems;
   for (const auto& a : config.attachments) sim::grid::attach(s.grid, a, config.file.string(), problems);
-  if (config.mend.widen_limits) sim::grid::settle_limits(s.grid, true);
+  if (config.widen_limits) sim::grid::settle_limits(s.grid, true);
   for (std::size_t g = 0; g < config.generators.size(); ++g) {
     const int number = config.generators[g], bus = network.bus_index(number);
     const std::string id = g < config.ids.size() ? config.ids[g] : "";

@@ -18,14 +18,6 @@ expect 0 "dataset $whole" "$generate" "${options[@]}" --out "$work/killed"
 [ "$(hash_of "$work/killed")" = "$whole" ] || fail "another hash after kill -9"
 diff -r "$work/whole/shards" "$work/killed/shards" || fail "leftovers or other bytes after kill -9"
 
-# kill -9 of one rank of three: mpirun ends the others, the next run continues.
-mpirun --oversubscribe -np 3 "$generate" "${options[@]}" --out "$work/rank" >/dev/null 2>&1 &
-pid=$!
-wait_for_lines "$work/rank" 3
-kill -9 "$(pgrep -P $pid -f "$work/rank" | tail -1)"
-wait $pid && fail "mpirun cannot succeed without a rank"
-expect 0 "dataset $whole" ranks 2 "$generate" "${options[@]}" --out "$work/rank"
-
 # A signal: exit code 2, and "submit again" resumes.
 "$generate" "${options[@]}" --out "$work/soft" >/dev/null 2>&1 &
 pid=$!
@@ -35,11 +27,3 @@ code=0
 wait $pid || code=$?
 [ $code = 2 ] || fail "exit code $code after SIGTERM"
 expect 0 "dataset $whole" "$generate" "${options[@]}" --out "$work/soft"
-mpirun --oversubscribe -np 3 "$generate" "${options[@]}" --out "$work/usr1" >/dev/null 2>&1 &
-pid=$!
-wait_for_lines "$work/usr1" 2
-kill -USR1 $pid
-code=0
-wait $pid || code=$?
-[ $code = 2 ] || fail "exit code $code after SIGUSR1 to mpirun"
-expect 0 "dataset $whole" "$generate" "${options[@]}" --out "$work/usr1"

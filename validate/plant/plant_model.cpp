@@ -8,6 +8,7 @@
 #include "base/describe.hpp"
 #include "base/input_file.hpp"
 #include "base/sha256.hpp"
+#include "sim/grid/case_words.hpp"
 #include "sim/plant/orderings.hpp"
 #include "sim/plant/usual.hpp"
 #include "sim/user_models/user_model.hpp"
@@ -264,12 +265,9 @@ void read_from_grid(Config& config, PlantModel& model) {
   choice.id =
       config.optional<std::string>("grid.id", "", {.meaning = "id of the unit, if its bus has several"});
   choice.models = sim::formats::read_dyr_options(config, "grid.");
-  const std::string complete =
-      config.choice("grid.complete_records", {"no", "zero", "standard"}, "no",
-                    {.meaning = "completion of records that are shorter than their model"});
-  choice.complete_records = complete == "zero"       ? sim::grid::Lacking::zero
-                            : complete == "standard" ? sim::grid::Lacking::standard
-                                                     : sim::grid::Lacking::refused;
+  choice.complete_records =
+      sim::grid::choose(config, "grid.complete_records", sim::grid::kLackingWords, choice.complete_records,
+                        {.meaning = "completion of records that are shorter than their model"});
   if (config.has("grid.measured_at"))
     choice.measured_at = static_cast<int>(config.require<std::int64_t>(
         "grid.measured_at", {1.0, kMostBuses, "", "bus of the records, behind the unit's transformer"}));
