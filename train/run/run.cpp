@@ -315,8 +315,8 @@ bool begin(const PreparedRun& run, const std::filesystem::path& result, std::opt
   make_folder(run.request.out);
   make_folder(locks);
   // Runs of other noise levels wait for their common network.
-  const std::chrono::seconds patience =
-      run.recipe.noise_levels ? std::chrono::hours(12) : std::chrono::seconds(5);
+  const std::chrono::milliseconds patience =
+      run.recipe.noise_levels ? std::chrono::hours(12) : run.request.patience;
   lock.emplace(locks / (training_name(run.request) + ".lock"),
                LockWords{"a second run", result.string(), "wait for it to end, or choose another --out"},
                patience);

@@ -1,6 +1,7 @@
 #pragma once
 // One run: split, features, training, score, JSON. Used by `swingbank train` and, for each fold, by
 // `swingbank cross-validate`.
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -33,6 +34,7 @@ struct RunRequest {
   runtime::Runtime runtime;
   bool quiet = false;
   bool watch = false;                        ///< draws the learning curve on the terminal
+  std::chrono::milliseconds patience{5000};  ///< waiting time for another process at the same run
   std::function<bool()> stop = {};           ///< polled before each batch; empty: stop_asked()
   const mpi::items::Ranks* ranks = nullptr;  ///< that train the network together; null: this process alone
 };

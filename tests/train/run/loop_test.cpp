@@ -272,6 +272,7 @@ TEST(Training, DistinguishesResultsOfOtherVersions) {
 TEST(Training, ASecondProcessAtTheSameRunIsRefused) {
   const World world("second");
   RunRequest r = request(world, "cnn", 1);
+  r.patience = std::chrono::milliseconds(200);
   make_folder(r.out / "checkpoints");
   const auto file = r.out / "checkpoints" / (run_name(r) + ".lock");
   {
