@@ -31,11 +31,15 @@ Recording with_noise(Recording r, double level, std::uint64_t seed) {
 struct Judged {
   double ratio = 0, chi_square = 0;
 };
-Judged judge(const std::string& system, std::span<const ParameterPrior> free, double level) {
+constexpr std::size_t kSomeMachines = 4, kAllMachines = 10;
+Judged judge(const std::string& system, std::span<const ParameterPrior> free, double level,
+             std::size_t machines) {
   const auto grid = test::configured_grid(system, Conventions::psse());
   Judged all;
   double count = 0;
-  for (Recording clean : recorded(grid, 16, 2.063)) {
+  std::vector<Recording> records = recorded(grid, 16, 2.063);
+  records.resize(machines);
+  for (Recording& clean : records) {
     const auto& machine = grid.plants[static_cast<std::size_t>(count)].machine;
     clean.event = 2.0;
     clean.noise = {level};
@@ -58,28 +62,35 @@ Judged judge(const std::string& system, std::span<const ParameterPrior> free, do
   return all;
 }
 
+const std::vector<ParameterPrior> kClassical = {uniform_prior(0, 1, 10), uniform_prior(1, 0, 8),
+                                                uniform_prior(3, 0.05, 0.6)};
+// Round-rotor machines: thirteen unknowns each, several of them strongly correlated.
+const std::vector<ParameterPrior> kRoundRotor = {
+    uniform_prior(0, 2, 10),     uniform_prior(1, 0.05, 0.2),   uniform_prior(2, 0.5, 1.2),
+    uniform_prior(3, 0.08, 0.2), uniform_prior(4, 1, 10),       uniform_prior(5, 0, 3),
+    uniform_prior(6, 0.8, 2.5),  uniform_prior(7, 0.8, 2.4),    uniform_prior(8, 0.32, 0.6),
+    uniform_prior(9, 0.45, 0.8), uniform_prior(11, 0.05, 0.24), uniform_prior(12, 0.01, 0.3),
+    uniform_prior(13, 0.1, 1)};
+
 // For ten records with two unknowns each, the mean of squared normal numbers has a standard deviation of 0.3.
-TEST(Likelihood, ReachesTheBoundOfClassicalMachines) {
-  const std::vector<ParameterPrior> free = {uniform_prior(0, 1, 10), uniform_prior(1, 0, 8),
-                                            uniform_prior(3, 0.05, 0.6)};
-  for (const double level : {0.001, 0.005}) {
-    const Judged j = judge("ieee39_dataset_gencls", free, level);
-    EXPECT_NEAR(j.chi_square, 1, 0.03) << level;
-    EXPECT_LT(j.ratio, 1.9) << level;
-  }
+void expect_bound_of_classical_machines(double level) {
+  const Judged j = judge("ieee39_dataset_gencls", kClassical, level, kAllMachines);
+  EXPECT_NEAR(j.chi_square, 1, 0.03);
+  EXPECT_LT(j.ratio, 1.9);
+}
+TEST(Likelihood, ReachesTheBoundOfClassicalMachines) { expect_bound_of_classical_machines(0.001); }
+TEST(LikelihoodFull, ReachesTheBoundOfClassicalMachines_WithMoreNoise) {
+  expect_bound_of_classical_machines(0.005);
 }
 
-// Round-rotor machines: thirteen unknowns each, several of them strongly correlated.
-TEST(Likelihood, ReachesTheBoundOfRoundRotorMachines) {
-  const std::vector<ParameterPrior> free = {
-      uniform_prior(0, 2, 10),     uniform_prior(1, 0.05, 0.2),   uniform_prior(2, 0.5, 1.2),
-      uniform_prior(3, 0.08, 0.2), uniform_prior(4, 1, 10),       uniform_prior(5, 0, 3),
-      uniform_prior(6, 0.8, 2.5),  uniform_prior(7, 0.8, 2.4),    uniform_prior(8, 0.32, 0.6),
-      uniform_prior(9, 0.45, 0.8), uniform_prior(11, 0.05, 0.24), uniform_prior(12, 0.01, 0.3),
-      uniform_prior(13, 0.1, 1)};
-  const Judged j = judge("ieee39_dataset_genrou", free, 0.001);
+void expect_bound_of_round_rotor_machines(std::size_t machines) {
+  const Judged j = judge("ieee39_dataset_genrou", kRoundRotor, 0.001, machines);
   EXPECT_NEAR(j.chi_square, 1, 0.03);
   EXPECT_LT(j.ratio, 1.6);
+}
+TEST(Likelihood, ReachesTheBoundOfRoundRotorMachines) { expect_bound_of_round_rotor_machines(kSomeMachines); }
+TEST(LikelihoodFull, ReachesTheBoundOfRoundRotorMachines) {
+  expect_bound_of_round_rotor_machines(kAllMachines);
 }
 
 TEST(Likelihood, NamesUnsupportedMachines) {
