@@ -1,6 +1,7 @@
 #include "jobs/page_server.hpp"
 
 #include <fmt/format.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
@@ -107,7 +108,7 @@ live::Values values_of(const json& body) {
 struct PageServer::State {
   PageParts parts;
   std::string token = random_word();
-  int port = 0;
+  int port = 0, socket = -1;  ///< where it listens
   httplib::Server http;
   std::mutex lock;
   std::map<std::string, std::shared_ptr<Page>> pages;
@@ -270,6 +271,10 @@ void PageServer::State::routes() {
   http.set_keep_alive_timeout(kIdle);
   http.set_read_timeout(kIdle);
   http.set_tcp_nodelay(true);
+  http.set_socket_options([this](int made) {
+    httplib::default_socket_options(made);
+    socket = made;
+  });
   http.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   http.set_default_headers({{"X-Content-Type-Options", "nosniff"},
                             {"Referrer-Policy", "no-referrer"},
@@ -375,6 +380,8 @@ PageServer::PageServer(PageParts parts, int port) : state_(std::make_unique<Stat
   if (state_->port <= 0)
     throw InputError({fmt::format("port {}", port), "--port", "another program uses it",
                       "choose another one, or leave --port out"});
+  // httplib's queue of 5 connections drops the next ones, which a browser repeats after a second.
+  ::listen(state_->socket, static_cast<int>(kThreads));
 }
 
 PageServer::~PageServer() = default;
