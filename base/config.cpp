@@ -32,10 +32,11 @@ std::string place(const fs::path& name, const toml::source_position& p) {
 }
 
 std::string list(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
-/// Returns `remedy`, the words and a suggestion: "use one of: GENCLS, GENROU; did you mean GENROU?".
+/// Returns `remedy`, the words and a suggestion from `free`: "use one of: GENCLS, GENROU; did you mean
+/// GENROU?".
 std::string choose_from(std::string_view word, const std::vector<std::string>& words,
-                        const std::string& remedy) {
-  const std::string nearest = nearest_word(word, words);
+                        const std::vector<std::string>& free, const std::string& remedy) {
+  const std::string nearest = nearest_word(word, free);
   return remedy + list(words) + (nearest.empty() ? "" : "; did you mean " + nearest + "?");
 }
 
@@ -100,10 +101,12 @@ std::string written(const toml::node& n) {
 /// Adds a problem for every key that was never read.
 void unknown(const toml::table& table, const std::string& prefix, const std::set<std::string>& asked,
              const fs::path& name, Problems& problems) {
-  std::vector<std::string> known;
+  std::vector<std::string> known, missing;  // a key that the table has is not suggested
   for (const auto& key : asked)
-    if (key.starts_with(prefix) && key.find('.', prefix.size()) == std::string::npos)
+    if (key.starts_with(prefix) && key.find('.', prefix.size()) == std::string::npos) {
       known.push_back(key.substr(prefix.size()));
+      if (!table.contains(known.back())) missing.push_back(known.back());
+    }
   for (const auto& [key, node] : table) {
     const std::string full = prefix + std::string(key.str());
     if (asked.contains(full)) continue;
@@ -112,10 +115,11 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
     if (inner)
       unknown(*node.as_table(), full + ".", asked, name, problems);
     else
-      problems.add("unknown key " + full, place(name, key.source().begin),
-                   prefix.empty() ? "nothing reads it"
-                                  : "nothing reads it in [" + prefix.substr(0, prefix.size() - 1) + "]",
-                   known.empty() ? "remove it" : choose_from(key.str(), known, "remove it or use one of: "));
+      problems.add(
+          "unknown key " + full, place(name, key.source().begin),
+          prefix.empty() ? "nothing reads it"
+                         : "nothing reads it in [" + prefix.substr(0, prefix.size() - 1) + "]",
+          known.empty() ? "remove it" : choose_from(key.str(), known, missing, "remove it or use one of: "));
   }
 }
 
@@ -303,7 +307,7 @@ std::string Config::choice(const std::string& key, const std::vector<std::string
   if (!take(key, word, {}) || word.empty()) return word;
   if (std::find(words.begin(), words.end(), word) == words.end())
     problem(key, key + " = '" + word + "'", "there is no such choice",
-            choose_from(word, words, "use one of: "));
+            choose_from(word, words, words, "use one of: "));
   return word;
 }
 

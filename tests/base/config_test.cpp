@@ -80,6 +80,16 @@ TEST(StrictConfig, ReportsAllProblemsWithTheirLines) {
   EXPECT_THAT(s, HasSubstr("use one of: red, green"));
 }
 
+TEST(StrictConfig, SuggestsOnlyKeysThatTheTableLacks) {
+  Config c("Xd = 1.8\nXdd = 0.3\nXq = 1.7\n", "c.toml");
+  for (const char* key : {"Xd", "Xdp", "Xq"}) c.optional<double>(key, 0.0);
+  EXPECT_THAT(sentence_of(c), HasSubstr("remove it or use one of: Xd, Xdp, Xq; did you mean Xdp?"));
+  Config full("Xd = 1.8\nXdd = 0.3\n", "c.toml");
+  full.require<double>("Xd");
+  EXPECT_EQ(sentence_of(full),
+            "unknown key Xdd at c.toml:2:1 (nothing reads it): remove it or use one of: Xd");
+}
+
 TEST(StrictConfig, UnknownTableIsNamedOnce) {
   Config c("a = 1\n[other]\nx = 1\ny = 2\n", "c.toml");
   c.require<std::int64_t>("a");

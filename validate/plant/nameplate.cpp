@@ -87,9 +87,13 @@ void refuse_unknown(Config& config, const std::string& table, const std::vector<
     config.problem(table, table + " that is no table", "it has the fields of the nameplate",
                    "write [" + table + "] on a line of its own, and the fields below it");
   config.ignore(table);  // it may be empty
-  for (const auto& key : config.keys(table)) {
+  const std::vector<std::string> keys = config.keys(table);
+  std::vector<std::string> missing;
+  std::ranges::copy_if(known, std::back_inserter(missing),
+                       [&](const auto& key) { return std::ranges::count(keys, key) == 0; });
+  for (const auto& key : keys) {
     if (std::ranges::count(known, key) > 0) continue;
-    const std::string full = table + "." + key, nearest = nearest_word(key, known);
+    const std::string full = table + "." + key, nearest = nearest_word(key, missing);
     config.problem(full, "unknown key " + full, "nothing reads it in [" + table + "]",
                    fmt::format("remove it or use one of: {}{}", fmt::join(known, ", "),
                                nearest.empty() ? "" : "; did you mean " + nearest + "?"));

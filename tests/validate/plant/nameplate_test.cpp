@@ -121,6 +121,13 @@ firmwar = "1"
   EXPECT_EQ(std::ranges::count(all, '\n'), 9) << all;
 }
 
+TEST(Nameplate, PresentFieldsAreNotSuggested) {
+  const std::string all = refusal("[nameplate.machine]\nmodel = \"X\"\nmodell = \"Y\"\n");
+  EXPECT_THAT(all, HasSubstr("unknown key nameplate.machine.modell"));
+  EXPECT_THAT(all, HasSubstr("use one of: manufacturer, model, serial"));
+  EXPECT_THAT(all, Not(HasSubstr("did you mean model?")));
+}
+
 TEST(Nameplate, EmptyTablesAreAcceptedAndOtherValuesAreNot) {
   EXPECT_EQ(refusal("[nameplate]\n[nameplate.exciter]\n"), "accepted");
   EXPECT_THAT(refusal("[nameplate]\nexciter = \"ABC\"\n"), HasSubstr("nameplate.exciter that is no table"));
