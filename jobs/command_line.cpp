@@ -65,9 +65,13 @@ class GroupedHelp : public CLI::Formatter {
     }
     return text + "\n" + make_footer(app);
   }
-  /// Omits the list of excluded options, which may be long; the error message names those given.
+  /// Omits the list of excluded options, which may be long; the error message names those given. The dots of
+  /// several values are kept only where they may follow one use of the option.
   std::string make_option_opts(const CLI::Option* option) const override {
-    const std::string text = CLI::Formatter::make_option_opts(option);
+    std::string text = CLI::Formatter::make_option_opts(option);
+    constexpr std::string_view kSeveral = " ...";
+    if (const auto at = text.find(kSeveral); at != std::string::npos && !option->get_allow_extra_args())
+      text.erase(at, kSeveral.size());
     return text.substr(0, text.find(" Excludes:"));
   }
   std::string make_option_desc(const CLI::Option* option) const override {

@@ -45,6 +45,13 @@ diff "$work/expected" "$work/words" || fail "unknown options are reported otherw
 "$swingbank" plant --raw a.raw extra 2>"$work/words" >&2 && fail "a word too many is accepted"
 grep -q "^unexpected word at 'extra'" "$work/words" || fail "a word too many is reported otherwise: $(cat "$work/words")"
 
+# Several values after one use of an option are accepted where the help shows dots, and only there.
+"$swingbank" compare --help >"$work/help"
+grep -q -- '--records,--record TEXT \.\.\.' "$work/help" || fail "the help of --records has no dots"
+! grep -q -- '--switch TEXT \.\.\.' "$work/help" || fail "the help of --switch has dots, but it takes one value at a time"
+misused "two values of --switch" "unexpected word at '2.1'" "$swingbank" compare --model a.toml --switch 2.0 2.1 --records r.csv
+refuses "two uses of --switch" "a.toml" "$swingbank" compare --model a.toml --records r.csv --switch 2.0 --switch 2.1
+
 # the validation commands come first; internal ones are not listed
 "$swingbank" --help >"$work/help"
 awk '/^[A-Z].*:$/ {print}' "$work/help" >"$work/groups"
