@@ -7,6 +7,7 @@
 
 #include "base/durable.hpp"
 #include "base/inputs_kept.hpp"
+#include "base/own_executable.hpp"
 
 namespace swingbank {
 
@@ -53,7 +54,7 @@ std::string reason(const fs::path& file) {
 
 fs::path example_configs() {
   std::error_code error;
-  fs::path own = fs::read_symlink("/proc/self/exe", error).parent_path();
+  fs::path own = own_executable(error).parent_path();
   if (error) return {};
   if (own.filename().string().starts_with("x86-64-v")) own = own.parent_path();  // instruction-set folder
   // The second path is that of the build folder, for any layout of an installation.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/child.hpp"
+#include "base/own_executable.hpp"
 #include "base/problem.hpp"
 
 namespace swingbank::jobs {
@@ -19,10 +20,15 @@ namespace swingbank::jobs {
 /// executable's.
 inline std::filesystem::path commands_folder;
 
-/// Returns the folder of the commands of this build.
+/// Returns the folder of the commands of this build. Throws InputError if the executable's path is unknown.
 inline std::filesystem::path own_folder() {
   if (!commands_folder.empty()) return commands_folder;
-  return std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  std::error_code error;
+  const auto program = own_executable(error);
+  if (error)
+    throw InputError({"no folder of the commands", "/proc/self/exe", error.message(),
+                      "mount /proc, or start swingbank by its path"});
+  return program.parent_path();
 }
 
 /// Returns the path of `swingbank-<command>` in this program's folder. Throws InputError with `remedy` if it

@@ -137,9 +137,7 @@ int run(const fs::path& folder, const std::string& name, char** arguments) {
   return 1;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int dispatch(int argc, char** argv) {
   const fs::path folder = swingbank::jobs::own_folder();
   const auto commands = found_commands(folder);
   const std::string first = argc > 1 ? argv[1] : "";
@@ -163,4 +161,15 @@ int main(int argc, char** argv) {
   std::string help = "--help";
   char* ask[] = {help.data(), nullptr};
   return run(folder, name, help_on ? ask : argv + 2);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const swingbank::InputError& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
 }

@@ -52,6 +52,17 @@ grep -q -- '--records,--record TEXT \.\.\.' "$work/help" || fail "the help of --
 misused "two values of --switch" "unexpected word at '2.1'" "$swingbank" compare --model a.toml --switch 2.0 2.1 --records r.csv
 refuses "two uses of --switch" "a.toml" "$swingbank" compare --model a.toml --records r.csv --switch 2.0 --switch 2.1
 
+# Without /proc the commands are found by the path of the started program.
+as_user=()
+if ((EUID != 0)); then as_user=(--user --map-root-user); fi
+without_proc() { unshare "${as_user[@]}" --mount bash -c 'mount -t tmpfs none /proc && exec "$@"' - "$@"; }
+ln -s "$swingbank" "$work/linked"
+for start in "$swingbank" "$work/linked"; do
+  without_proc "$start" compare --help >"$work/without" || fail "without /proc: $(cat "$work/without")"
+  cmp "$work/help" "$work/without" || fail "without /proc compare --help says something else"
+done
+[[ $(without_proc "$swingbank" configs) == "$("$swingbank" configs)" ]] || fail "configs without /proc"
+
 # the validation commands come first; internal ones are not listed
 "$swingbank" --help >"$work/help"
 awk '/^[A-Z].*:$/ {print}' "$work/help" >"$work/groups"

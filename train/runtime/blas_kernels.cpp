@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "base/own_executable.hpp"
 #include "base/problem.hpp"
 #include "train/runtime/blas_check.hpp"
 
@@ -73,7 +74,7 @@ std::string environment(const char* name) {
 std::string restart(const std::string& asked, const std::string& alone, char** argv) {
   std::error_code error;
   // The path itself and not /proc/self/exe, which `ps` would show as the name.
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto program = own_executable(error);
   setenv(kAsked, asked.c_str(), 1);
   setenv(kAlone, alone.c_str(), 1);
   std::fflush(nullptr);
