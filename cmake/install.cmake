@@ -55,7 +55,7 @@ set(CMAKE_INSTALL_BINDIR ${CMAKE_INSTALL_BINDIR})
 configure_file(\"${PROJECT_SOURCE_DIR}/packaging/modulefile\" \"${PROJECT_BINARY_DIR}/modulefile\" @ONLY)")
 install(FILES ${PROJECT_BINARY_DIR}/modulefile DESTINATION ${CMAKE_INSTALL_DATADIR}/modulefiles/swingbank RENAME ${PROJECT_VERSION})
 
-# README.md's relative links lead to the same paths in the installation.
+# README.md's relative links lead to the same paths in the installation; those to other files become plain text.
 install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY python/notebooks DESTINATION ${CMAKE_INSTALL_DOCDIR}/python)
@@ -67,4 +67,7 @@ foreach(readme ${readmes})
 endforeach()
 # The chart library is part of programs and reports; its licence requires this notice.
 install(FILES validate/report/uplot/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME uplot.copyright)
+install(CODE "execute_process(COMMAND bash \"${PROJECT_SOURCE_DIR}/cmake/plain_links.sh\"
+  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DOCDIR}\"
+  \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}/swingbank\" COMMAND_ERROR_IS_FATAL ANY)")
 swingbank_install_package()

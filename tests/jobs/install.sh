@@ -24,6 +24,23 @@ for file in README.md LICENSE CHANGELOG.md docs/reference/formats.md validate/RE
   [[ -s $prefix/share/doc/swingbank/$file ]] || fail "no share/doc/swingbank/$file"
 done
 
+# Every link of an installed document leads to an installed file.
+/usr/bin/python3 - "$prefix" <<'PYTHON' || fail "links of installed documents"
+import pathlib, re, sys
+prefix, links, broken = pathlib.Path(sys.argv[1]), 0, []
+for document in prefix.rglob("*.md"):
+    text = re.sub(r"^```.*?^```", "", document.read_text(), flags=re.DOTALL | re.MULTILINE)
+    for target in re.findall(r"\]\(([^()\s]+)\)", text):
+        if re.match(r"[a-z]+:|#", target):
+            continue
+        links += 1
+        if not (document.parent / target.partition("#")[0]).exists():
+            broken.append(f"{document.relative_to(prefix)}: {target}")
+assert links > 100, links
+sys.exit("\n".join(broken) or None)
+PYTHON
+grep -qF 'Containerfile' "$prefix/share/doc/swingbank/docs/how-to/install.md" || fail "the text of a link is lost"
+
 # The environment module, in a shell that knows nothing of the prefix.
 in_shell() { env -i PATH=/usr/bin:/bin HOME="$work" MODULEPATH="$prefix/share/modulefiles" bash -c "$1"; }
 load='eval "$(modulecmd bash load swingbank)"'
