@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # Generates man pages and completion for bash, zsh and fish from the programs' --help, and the JSON Schemas of files:
 # none is maintained by hand.
-#   bash cmake/from_help.sh BIN VERSION OUT     writes OUT/man1/*.1, OUT/{swingbank.bash,_swingbank,swingbank.fish}, OUT/schema/*.json
+#   bash cmake/from_help.sh BIN VERSION OUT OTHER...
+# writes OUT/man1/*.1, OUT/{swingbank.bash,_swingbank,swingbank.fish}, OUT/schema/*.json, and OUT/alone/swingbank.1, which
+# does not list OTHER: the programs of another component ("swingbank-train").
 set -euo pipefail
-bin=$1 version=$2 out=$3
+bin=$1 version=$2 out=$3 others=" ${*:4} "
 
 if ! command -v help2man >/dev/null; then
   echo "no man pages at cmake --install (help2man is missing): apt-get install help2man" >&2
   exit 1
 fi
 rm -rf "$out"
-mkdir -p "$out/man1" "$out/help"
+mkdir -p "$out/man1" "$out/alone" "$out/help"
 # research/ is not installed.
 "$bin/swingbank" --help | sed '/^Benchmarks:/,/^$/d' >"$out/help/all"
 # "  name  summary" under the headings of the groups
@@ -30,15 +32,15 @@ two_spaces() {
     END { say(held) }' "$1"
 }
 
-# page PROGRAM HELP SUMMARY SEE-ALSO: the options as --help describes them. help2man runs a program; here one that
+# page FOLDER PROGRAM HELP SUMMARY SEE-ALSO: the options as --help describes them. help2man runs a program; here one that
 # repeats the text obtained before, as some programs take a second to start.
 page() {
-  two_spaces "$out/help/$2" >"$out/help/said"
-  printf '#!/bin/sh\ncat "%s"\n' "$out/help/said" >"$out/help/$1"
-  chmod +x "$out/help/$1"
-  printf '[files]\nThe example configs lie in the folder that\n.B swingbank configs\nprints.\n\n[see also]\n%s\n' "$4" >"$out/more"
-  LC_ALL=C.UTF-8 help2man --no-info --include="$out/more" --version-string="$version" --name="$3" --manual=Swingbank \
-    --source="swingbank $version" --output="$out/man1/$1.1" "$out/help/$1"
+  two_spaces "$out/help/$3" >"$out/help/said"
+  printf '#!/bin/sh\ncat "%s"\n' "$out/help/said" >"$out/help/$2"
+  chmod +x "$out/help/$2"
+  printf '[files]\nThe example configs lie in the folder that\n.B swingbank configs\nprints.\n\n[see also]\n%s\n' "$5" >"$out/more"
+  LC_ALL=C.UTF-8 help2man --no-info --include="$out/more" --version-string="$version" --name="$4" --manual=Swingbank \
+    --source="swingbank $version" --output="$out/$1/$2.1" "$out/help/$2"
 }
 
 # "<command>\t<option>\t<type>\t<choices>\t<meaning>", a line for each option's name. The type (TEXT, INT, ...) is - for
@@ -84,15 +86,24 @@ words_of() {
   sed -n '/^Positionals:/,/^$/s/^  [A-Za-z]* TEXT:{\([^}]*\)}.*/\1/p' "$out/help/$1" | head -n 1 | tr ',' ' ' | sed "s/^/$1\t/"
 }
 
-see_also=
+see_also='' see_also_alone=''
 while IFS=$'\t' read -r command summary; do
   "$bin/swingbank-$command" --help >"$out/help/$command" </dev/null
-  page "swingbank-$command" "$command" "$summary" '.BR swingbank (1)'
+  page man1 "swingbank-$command" "$command" "$summary" '.BR swingbank (1)'
   options_of "$command" >>"$out/options"
   words_of "$command" >>"$out/words"
   see_also+=".BR swingbank-$command (1)"$'\n'
+  [[ $others == *" swingbank-$command "* ]] || see_also_alone+=".BR swingbank-$command (1)"$'\n'
 done < <(commands)
-page swingbank all "power-plant model validation at scale" "$see_also"
+page man1 swingbank all "power-plant model validation at scale" "$see_also"
+# without the lines of the others, and without a heading that has no line left
+awk -v others="$others" '
+  /^  [a-z]/ && index(others, " swingbank-" $1 " ") { next }
+  /^[A-Z].*:$/ && $0 !~ /^Usage/ { heading = $0; next }
+  heading != "" && /^$/ { heading = ""; next }
+  heading != "" { print heading; heading = "" }
+  { print }' "$out/help/all" >"$out/help/alone"
+page alone swingbank alone "power-plant model validation at scale" "$see_also_alone"
 
 # with_template FILE: OUT/FILE of the text from standard input and of cmake/completion/FILE below its line "# ---".
 with_template() {

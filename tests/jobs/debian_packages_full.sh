@@ -38,7 +38,9 @@ for file in man/man1/swingbank.1.gz man/man1/swingbank-compare.1.gz doc/swingban
   bash-completion/completions/swingbank; do
   [[ -s $share/$file ]] || fail "no $file"
 done
-[[ ! -e $share/man/man1/swingbank-generate.1.gz ]] || fail "a man page of a command of swingbank-train"
+listed=$(zcat "$share/man/man1/swingbank.1.gz" | sed 's/\\//g' | sed -nE 's/^\.BR (swingbank-[a-z-]+) \(1\)$/\1/p' | sort)
+cmp <(echo "$listed") <(cd "$share/man/man1" && printf '%s\n' swingbank-*.1.gz | sed 's/\.1\.gz$//') || fail "swingbank(1) refers to $listed"
+! zcat "$share/man/man1/swingbank.1.gz" | holds -qxE 'train|generate|databank' || fail "swingbank(1) lists commands of swingbank-train"
 for words in 'BSD-3-Clause' 'Copyright: 2022 Leon Sorokin'; do
   grep -qF "$words" "$share/doc/swingbank/copyright" || fail "copyright lacks $words"
 done
