@@ -50,6 +50,13 @@ std::string column(const std::vector<double>& values) {
   for (const double v : values) text += (text.empty() ? "[" : ",") + number(v);
   return text.empty() ? "[]" : text + "]";
 }
+/// Returns which times a chart shows at first: "t = 1 to 7 s of 0 to 15 s"; empty if it shows all. report.js
+/// follows the zoom.
+std::string shown_part(const Curves& c) {
+  if (!c.view || c.x.empty() || (c.view->first <= c.x.front() && c.view->second >= c.x.back())) return {};
+  return fmt::format("t = {:.4g} to {:.4g} s of {:.4g} to {:.4g} s", c.view->first, c.view->second,
+                     c.x.front(), c.x.back());
+}
 const char* tone_class(Tone tone) {
   return tone == Tone::good ? "good" : tone == Tone::warn ? "warn" : tone == Tone::bad ? "bad" : "found";
 }
@@ -125,11 +132,12 @@ class Renderer {
     std::string text = script_safe(json_text(of));
     text.back() = ',';
     body += fmt::format(
-        "<figure{}><figcaption><b>{}</b> [{}] {}{}</figcaption><div class=\"chart\" role=\"img\" "
+        "<figure{}><figcaption><b>{}</b> [{}] {}{} <span class=\"part\">{}</span></figcaption><div class=\"chart\" role=\"img\" "
         "aria-label=\"{}\"><script type=\"application/json\">{}\"data\":[{}]}}</script></div></figure>\n",
         c.id.empty() ? "" : fmt::format(" id=\"{}\"", escape(c.id)), escape(c.title), escape(c.unit), legend,
-        c.window ? " <span class=\"entry\"><span class=\"key window\"></span>largest error</span>" : "",
-        escape(c.title), text, columns);
+        c.window ? " <span class=\"entry\"><span class=\"key window\"></span>largest error</span>"
+                 : "",
+        shown_part(c), escape(c.title), text, columns);
   }
   void operator()(const Bars& b) {
     body += fmt::format("<figure><figcaption>{}</figcaption>{}</figure>\n", escape(b.title), bars_svg(b));

@@ -268,7 +268,8 @@ TEST(DiagnosisReportTest, PageOmitsUserModels_WithoutASearch) {
 TEST(DiagnosisPageTest, RendersInABrowser) {
   // A drag from 30 % to 60 % of the first chart's width: a user's zoom; then a double-click.
   const std::string act = R"js(<script>
-    const box=document.querySelector(".u-over"), r=box.getBoundingClientRect(), state=()=>charts_of_test().map((c)=>({group:c.of.group,x:c.x}));
+    const box=document.querySelector(".u-over"), r=box.getBoundingClientRect(), state=()=>charts_of_test().map((c)=>({group:c.of.group,x:c.x,
+      part:c.box.closest("figure").querySelector(".part").textContent}));
     const mouse=(what,x,on=box)=>on.dispatchEvent(new MouseEvent(what,{bubbles:true,cancelable:true,view:window,button:0,buttons:1,movementX:1,
       clientX:r.left+x*r.width,clientY:r.top+60}));
     const result={first:state(),figures:JSON.parse(document.getElementById("figures").textContent)};
@@ -294,6 +295,11 @@ TEST(DiagnosisPageTest, RendersInABrowser) {
   EXPECT_NEAR(range("zoomed", 0).first, from + 0.3 * 6, 0.1);
   EXPECT_NEAR(range("zoomed", 0).second, from + 0.6 * 6, 0.1);
   EXPECT_GT(range("whole", 0).second - range("whole", 0).first, 14);
+  // The caption states the shown part, since paper has no zoom.
+  EXPECT_THAT(result["first"][0]["part"].get<std::string>(),
+              testing::MatchesRegex("t = .* to .* s of 0 to 15 s"));
+  EXPECT_NE(result["zoomed"][0]["part"], result["first"][0]["part"]);
+  EXPECT_EQ(result["whole"][0]["part"], "");
   const auto& group = result["first"][0]["group"];
   std::size_t same = 0;
   for (std::size_t k = 0; k < result["first"].size(); ++k) {

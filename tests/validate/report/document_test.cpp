@@ -66,6 +66,21 @@ TEST(DocumentTest, IncludesScriptsOnlyWithCurves) {
     EXPECT_NE(text.find(asset(file).text), std::string::npos) << file;
   }
 }
+TEST(DocumentTest, CaptionStatesTheShownPart) {
+  Curves curves{"P", "MW", "event", {0, 15}};
+  curves.series = {{"measured", Ink::measured, {1, 2}}};
+  const auto caption = [&] {
+    Document page{"a", "b"};
+    page.add(curves);
+    const std::string text = html(page);
+    const auto begin = text.find("<figcaption>");
+    return text.substr(begin, text.find("</figcaption>") - begin);
+  };
+  curves.view = {1, 7};
+  EXPECT_THAT(caption(), HasSubstr("<span class=\"part\">t = 1 to 7 s of 0 to 15 s</span>"));
+  curves.view = {0, 15};
+  EXPECT_THAT(caption(), HasSubstr("<span class=\"part\"></span>"));
+}
 TEST(DocumentTest, SortableTableHasAScript) {
   Document page{"a", "b"};
   Table table{"", {"h"}, {{"c"}}};

@@ -21,6 +21,17 @@
   }
   const height = (box) => parseInt(getComputedStyle(box).getPropertyValue("--height"), 10) || 220;
 
+  /** Writes into the caption which times the chart shows, unless it shows all: paper has no zoom. */
+  function caption(chart) {
+    const { min, max } = chart.plot.scales.x;
+    const t = chart.of.data[0];
+    const all = min <= t[0] && max >= t.at(-1);
+    const text = (v) => String(Number(v.toPrecision(4)));
+    chart.box.closest("figure").querySelector(".part").textContent = all
+      ? ""
+      : `t = ${text(min)} to ${text(max)} s of ${text(t[0])} to ${text(t.at(-1))} s`;
+  }
+
   function draw(box) {
     const of = JSON.parse(box.querySelector("script").textContent);
     const chart = { of, box };
@@ -28,7 +39,13 @@
     options.legend = { live: true };
     options.cursor.sync.filters = { pub: (type) => type === "mousemove" || type === "mouseleave" };
     Object.assign(options.axes[0], { label: "t [s]", labelSize: 18, labelFont: "12px sans-serif", labelGap: 0 });
-    options.hooks.setScale = [(u, key) => key === "x" && chart.plot && follow(chart)];
+    options.hooks.setScale = [
+      (u, key) => {
+        if (key !== "x" || !chart.plot) return;
+        caption(chart);
+        follow(chart);
+      },
+    ];
     chart.plot = new uPlot(options, of.data, box);
     of.view ??= charts.find((c) => c.of.group === of.group)?.of.view; // as the other charts of the group
     if (of.view) {
@@ -75,5 +92,6 @@
     for (const c of charts) c.box.style.zoom = "";
   });
   /** The charts, for tests. */
-  globalThis.charts_of_test = () => charts.map((c) => ({ of: c.of, x: [c.plot.scales.x.min, c.plot.scales.x.max] }));
+  globalThis.charts_of_test = () => 
+    charts.map((c) => ({ of: c.of, box: c.box, x: [c.plot.scales.x.min, c.plot.scales.x.max] }));
 })();
