@@ -99,8 +99,8 @@ export function result(message, event, add) {
 export function summary(m, before, events) {
   const said = [
     m.ratio < before
-      ? `${m.label}: the largest error falls from ${times(before)} to ${times(m.ratio)} noise.`
-      : `${m.label}: the largest error does not fall (${times(before)} before, ${times(m.ratio)} noise after).`,
+      ? `${m.label}: the largest RMS / noise of all channels falls from ${times(before)} to ${times(m.ratio)}.`
+      : `${m.label}: the largest RMS / noise of all channels does not fall (${times(before)} before, ${times(m.ratio)} after).`,
   ];
   const changed = m.sliders
     .filter((p) => p.submitted !== undefined && p.value !== p.submitted)

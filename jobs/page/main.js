@@ -57,7 +57,7 @@ const windowOf = (chip) => {
 };
 const windows = () => chipsOf(state.step, state.event).map(windowOf);
 
-/** Returns the measured curve less and more the largest error that the limits allow before, in and after the fault. */
+/** Returns the measured curve less and more the maximum error (MXE) that the limits allow before, in and after the fault. */
 function allowed(largest, times_, t, measured) {
   if (!largest || !times_.length) return null;
   const size = t.map((at) => largest[at < times_[0] ? 0 : at <= times_.at(-1) ? 1 : 2]);
@@ -129,7 +129,11 @@ function showSteps() {
         "button",
         {},
         make("span", {}, s.label, make("small", { textContent: about(s).join("; ") })),
-        make("span", { className: "error", textContent: times(s.ratio) + " noise" }),
+        make("span", {
+          className: "error",
+          textContent: times(s.ratio) + " noise",
+          title: "largest RMS / noise of all channels",
+        }),
       );
       b.addEventListener(
         "click",

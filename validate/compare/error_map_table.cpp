@@ -164,11 +164,12 @@ std::string map_sentence(const std::vector<LabelledMap>& maps) {
           band = b;
         }
     text += text.empty() ? "" : " ";
-    text += worst.empty()
-                ? channel + " is within its noise everywhere."
-                : fmt::format("{} has its largest error in the window “{}” at {}: {} noise{}.", channel,
-                              window, error_bands()[band].name, report::times_noise(worst.normalised),
-                              events_beyond(maps, channel, window, band));
+    text +=
+        worst.empty()
+            ? channel + " is within its noise everywhere."
+            : fmt::format("{} is furthest above its noise bound in the window “{}” at {}: {} noise{}.",
+                          channel, window, error_bands()[band].name, report::times_noise(worst.normalised),
+                          events_beyond(maps, channel, window, band));
   }
   return text;
 }

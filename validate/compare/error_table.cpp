@@ -14,7 +14,8 @@ namespace {
 
 constexpr const char* kErrorCaption =
     "Residual (modelled − measured) over the whole record. Noise σ: standard deviation of the residual before "
-    "the event. RMS / noise: quotient of the two. A star marks a channel whose normalised RMS exceeds its bound "
+    "the event. RMS / noise: quotient of the two. Maximum error: largest "
+    "absolute value, with its time. A star marks a channel whose normalised RMS exceeds its bound "
     "(error map).";
 
 std::string quantity(double value, const ChannelComparison& c) {
@@ -48,7 +49,7 @@ report::Table error_table(const std::vector<Played>& played, const EventUse& use
   for (const Played& p : played)
     for (const char* what : {"RMS", "noise σ", "RMS / noise"})
       table.header.push_back(single ? what : fmt::format("{}, {}", what, p.name));
-  if (single) table.header.insert(table.header.end(), {"largest", "at"});
+  if (single) table.header.insert(table.header.end(), {"maximum error", "at"});
   const auto longest = std::ranges::max_element(played, {}, [](const Played& p) { return p.events.size(); });
   if (longest == played.end()) return table;
   for (std::size_t e = 0; e < longest->events.size(); ++e) {

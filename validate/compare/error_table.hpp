@@ -10,7 +10,7 @@
 namespace swingbank::validate::compare {
 
 /// Table with one row per event and channel: RMS, noise σ and RMS / noise of the whole record for each model
-/// (WindowError, ChannelComparison). For a single model it also has the largest error. After
+/// (WindowError, ChannelComparison). For a single model it also has the maximum error. After
 /// a fit, a column has the use of each event.
 report::Table error_table(const std::vector<Played>& played, const EventUse& use = {});
 /// The same table as terminal text below its caption.

@@ -85,7 +85,8 @@ report::Bars fall(const FirstScreen& s) {
   return bars;
 }
 
-/// Shades the window of the channel's largest error, and extends the view so that it is visible.
+/// Shades the window in which the channel is furthest above its noise bound, and extends the view so that it
+/// is visible.
 void shade_worst(report::Curves& c, const FirstScreen& s, std::size_t event, const std::string& name) {
   const EventComparison& of = s.before->events[event];
   const ChannelError error = channel_error(s.before->fitness, of, *find_channel(s.before, event, name));
@@ -160,13 +161,18 @@ ChannelError channel_error(const Fitness& fitness, const EventComparison& event,
   return error;
 }
 
-std::pair<std::size_t, std::vector<std::string>> worst_event(const Played& played) {
-  std::pair<std::size_t, std::vector<std::string>> worst;
-  double largest = -1;
+std::pair<double, std::size_t> largest_rms_over_noise(const Played& played) {
+  std::pair<double, std::size_t> largest{0, 0};
   for (std::size_t e = 0; e < played.events.size(); ++e)
     for (const auto& c : played.events[e].channels)
-      if (const double ratio = c.whole.in_noise; c.judged && std::isfinite(ratio) && ratio > largest)
-        largest = ratio, worst.first = e;
+      if (const double ratio = c.whole.in_noise; c.judged && std::isfinite(ratio) && ratio > largest.first)
+        largest = {ratio, e};
+  return largest;
+}
+
+std::pair<std::size_t, std::vector<std::string>> worst_event(const Played& played) {
+  std::pair<std::size_t, std::vector<std::string>> worst;
+  worst.first = largest_rms_over_noise(played).second;
   if (played.events.empty()) return worst;
   const auto& channels = played.events[worst.first].channels;
   for (const auto& c : channels)

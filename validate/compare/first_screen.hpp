@@ -18,7 +18,7 @@ std::string headline(bool complete, const Fitness& fitness, const std::string& m
 struct ChannelError {
   double bound = 0;   ///< largest normalised RMS / bound of all bins; above 1: more than noise
   int window = -1;    ///< window of the largest ratio; -1: no bins
-  double limit = 0;   ///< largest error / limit; above 1: exceeds an engineering limit
+  double limit = 0;   ///< largest ratio of an error to its engineering limit; above 1: exceeds it
   report::Tone tone;  ///< good: noise; warn: more than noise; bad: exceeds a limit
 };
 /// Returns the error of a channel, judged by the limits of `fitness`.
@@ -38,8 +38,10 @@ struct FirstScreen {
 /// Adds headline, chips, P and Q of the worst event, and the fall of the errors.
 void first_screen(report::Document& document, const FirstScreen& screen);
 
-/// Returns the event with the largest error, and its channels for the large charts: P and Q, or the first
-/// two.
+/// Returns the largest RMS / noise of all judged channels and its event; 0 and 0 if none has noise.
+std::pair<double, std::size_t> largest_rms_over_noise(const Played& played);
+/// Returns the event of largest_rms_over_noise(), and its channels for the large charts: P and Q, or the
+/// first two.
 std::pair<std::size_t, std::vector<std::string>> worst_event(const Played& played);
 
 /// Returns the chart of one channel: measured, and simulated by each model with its role. Empty without

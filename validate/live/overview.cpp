@@ -77,7 +77,8 @@ json map_of(const compare::EventComparison& e, const compare::ChannelComparison&
   return rows;
 }
 
-/// Returns the largest errors that the limits allow before, in and after the fault [unit of the channel].
+/// Returns the maximum errors (MXE) that the limits allow before, in and after the fault [unit of the
+/// channel].
 json allowed_errors(const compare::Fitness& fitness, const compare::EventComparison& event,
                     const compare::ChannelComparison& c) {
   json all = json::array({nullptr, nullptr, nullptr});
@@ -166,10 +167,6 @@ nlohmann::json step_json(const Setup& setup, const Step& step, int number_of) {
     const sim::Effect& effect = sim::plant::block_effect(step.model.plant, k);
     blocks.push_back({{"name", std::string(effect.name)}, {"title", std::string(effect.title)}});
   }
-  double ratio = 0;
-  for (const auto& e : step.played->events)
-    for (const auto& c : e.channels)
-      if (c.judged && std::isfinite(c.whole.in_noise)) ratio = std::max(ratio, c.whole.in_noise);
   json switchings = json::array();
   for (const auto& e : step.played->events) {
     json times = json::array();
@@ -189,7 +186,7 @@ nlohmann::json step_json(const Setup& setup, const Step& step, int number_of) {
           {"complete", step.complete},
           {"bands", !step.bands.empty()},
           {"fit", step.played->fitness.fit},
-          {"ratio", ratio},
+          {"ratio", compare::largest_rms_over_noise(*step.played).first},
           {"evidence", number(step.evidence)},
           {"held_out", step.held_out},
           {"blocks", blocks},

@@ -135,7 +135,7 @@ class Renderer {
         "<figure{}><figcaption><b>{}</b> [{}] {}{} <span class=\"part\">{}</span></figcaption><div class=\"chart\" role=\"img\" "
         "aria-label=\"{}\"><script type=\"application/json\">{}\"data\":[{}]}}</script></div></figure>\n",
         c.id.empty() ? "" : fmt::format(" id=\"{}\"", escape(c.id)), escape(c.title), escape(c.unit), legend,
-        c.window ? " <span class=\"entry\"><span class=\"key window\"></span>largest error</span>"
+        c.window ? " <span class=\"entry\"><span class=\"key window\"></span>furthest above noise</span>"
                  : "",
         shown_part(c), escape(c.title), text, columns);
   }

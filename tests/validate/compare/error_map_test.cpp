@@ -196,7 +196,8 @@ TEST(MapSentenceTest, NamesTheWindowAndBandOfTheLargestError) {
   set_bounds(maps, 0.02);
   const std::string text = map_sentence(
       {{"e1", "P", "MW", 1, &w, &a}, {"e2", "P", "MW", 1, &w, &b}, {"e1", "Q", "Mvar", 1, &w, &c}});
-  EXPECT_TRUE(text.starts_with("P has its largest error in the window “> 5 s after” at 0.1–0.8 Hz: "))
+  EXPECT_TRUE(
+      text.starts_with("P is furthest above its noise bound in the window “> 5 s after” at 0.1–0.8 Hz: "))
       << text;
   EXPECT_TRUE(text.ends_with(" noise, in 2 of 2 events. Q is within its noise everywhere.")) << text;
 }

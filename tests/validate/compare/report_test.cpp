@@ -158,7 +158,7 @@ TEST(CompareReportTest, FirstScreenLinksEachChannelToItsChart) {
   }
   const ChannelError q = channel_error(fitness, events[0], events[0].channels[1]);
   EXPECT_EQ(q.tone, report::Tone::bad);
-  EXPECT_THAT(html, HasSubstr("largest error</span> <span class=\"part\">"));
+  EXPECT_THAT(html, HasSubstr("furthest above noise</span> <span class=\"part\">"));
 }
 TEST(CompareReportTest, HeadlinesHaveAtMostEightWords) {
   Fitness fit, unfit;
