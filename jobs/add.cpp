@@ -2,6 +2,7 @@
 // event before and after. With --retrain, also shows the effect's influence on a trained network.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "base/json.hpp"
@@ -11,6 +12,7 @@
 #include "jobs/retrain_run.hpp"
 #include "validate/add/report.hpp"
 #include "validate/compare/error_table.hpp"
+#include "validate/compare/first_screen.hpp"
 #include "validate/compare/report_json.hpp"
 #include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
@@ -45,23 +47,33 @@ void say_on(compare::CommandPage& page, const add::Addition& added) {
                                    added.evidence, thresholds::addition.strong.value,
                                    added.earns ? "accepted" : "not accepted"));
 }
-compare::CommandPage page_of(const add::Addition& added) {
+/// Returns "added" and what remains in the events.
+std::string added_text(bool adequate, const compare::CommandPage& page, const compare::Played& played) {
+  if (!adequate) return "added: errors remain";
+  return "added" + compare::remainder_text(compare::remainder_of(played, page.noise_alone));
+}
+/// Returns whether every event is within the limit of noise alone.
+bool is_noise(const add::Addition& added) {
+  return std::ranges::all_of(added.events, [](const auto& e) { return e.score.is_noise(); });
+}
+compare::CommandPage page_of(const add::Addition& added, const std::vector<compare::Played>& played) {
   compare::CommandPage page;
   page.complete = added.adequate && added.earns;
+  page.noise_alone = is_noise(added);
   page.sentence = added.sentence;
-  page.headline = fmt::format("{} {}", added.hypothesis.name,
-                              !added.earns     ? "does not improve the model"
-                              : added.adequate ? "added: only noise remains"
-                                               : "added: errors remain");
+  page.headline = fmt::format(
+      "{} {}", added.hypothesis.name,
+      added.earns ? added_text(added.adequate, page, played.back()) : "does not improve the model");
   say_on(page, added);
   return page;
 }
-compare::CommandPage page_of(const add::Completion& c) {
+compare::CommandPage page_of(const add::Completion& c, const std::vector<compare::Played>& played) {
   compare::CommandPage page;
   page.complete = c.adequate;
+  page.noise_alone = c.added.empty() || is_noise(c.added.back());
   page.sentence = c.sentence;
-  page.headline = fmt::format("{} {} added: {}", c.added.size(), c.added.size() == 1 ? "effect" : "effects",
-                              c.adequate ? "only noise remains" : "errors remain");
+  page.headline = fmt::format("{} {} {}", c.added.size(), c.added.size() == 1 ? "effect" : "effects",
+                              added_text(c.adequate, page, played.back()));
   for (const auto& one : c.added) say_on(page, one);
   for (const auto& r : c.removed)
     page.tried.push_back(fmt::format("{} removed again: evidence {:.1f}.", r.effect, r.evidence));
@@ -165,7 +177,7 @@ int run(Arguments& a, plant::PlantModel& model) {
     const auto played =
         jobs::play_both(a.of, model, "completed", c.model, records, a.options.calibrate.progress);
     write(a, model, c.model, provenance, add::completion_json(c),
-          compare::complete_text(c.adequate, terminal_report(c)), played, page_of(c));
+          compare::complete_text(c.adequate, terminal_report(c)), played, page_of(c, played));
     return played.back().fitness.exit_code(c.adequate);
   }
   add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
@@ -175,7 +187,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   const auto played =
       jobs::play_both(a.of, model, "completed", done.model, records, a.options.calibrate.progress);
   write(a, model, done.model, provenance_lines(done, model, a.command), add::addition_json(done),
-        compare::complete_text(complete, terminal_report(done)), played, page_of(done));
+        compare::complete_text(complete, terminal_report(done)), played, page_of(done, played));
   if (a.retrain)
     if (const int code = run_retrain(a, programs, model, done, records); code != 0) return code;
   return played.back().fitness.exit_code(complete);

@@ -95,6 +95,7 @@ struct Calibrated {
   std::vector<fit::FittedParameter> parameters;
   nlohmann::json json;
   std::vector<std::string> notes = {};  ///< for the page
+  bool noise_alone = true;              ///< every event is within the limit of noise alone
 };
 
 /// Plays the events with both models.
@@ -112,6 +113,7 @@ int write(const Arguments& a, const plant::PlantModel& model, const check::Recor
   page.subtitle = fmt::format("{} of {:g} MVA; its parameters fitted to the records.", plant::subject(model),
                               model.plant.mva);
   page.complete = c.adequate;
+  page.noise_alone = c.noise_alone;
   page.sentence = c.sentence;
   page.played = played;
   page.parameters = jobs::page_parameters(c.parameters, c.model.plant);
@@ -249,7 +251,9 @@ int run(Arguments& a, plant::PlantModel& model) {
                 .provenance = calibrate::provenance_lines(c, a.command),
                 .parameters = fitted,
                 .json = std::move(result),
-                .notes = notes});
+                .notes = notes,
+                .noise_alone =
+                    std::ranges::all_of(c.events, [](const auto& e) { return e.is_noise(); })});
 }
 
 int run_interruptible(Arguments& a) {

@@ -294,13 +294,21 @@ std::string sentence_of(const Addition& a) {
       a.hypothesis.what, a.earns ? "added" : "not accepted", where, before / n, without / n, after / n);
   text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   if (a.own > 0) text += " " + own_values(a) + ".";
-  text +=
-      a.adequate ? " The residual is noise." : " The residual exceeds noise: another component is missing.";
+  std::string residual = a.adequate ? calibrate::residual_text(a.scores())
+                                    : "the residual exceeds noise: another component is missing";
+  residual.front() = 'T';
+  text += " " + residual + ".";
   if (const std::string bounds = fit::bounds_text(a.parameters); !bounds.empty()) text += " " + bounds;
   return text;
 }
 
 }  // namespace
+
+std::vector<calibrate::EventScore> Addition::scores() const {
+  std::vector<calibrate::EventScore> all;
+  for (const auto& e : events) all.push_back(e.score);
+  return all;
+}
 
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name) {
   const auto named = [&](const hypothesis::Hypothesis& h) { return plain(h.name) == plain(name); };
@@ -353,18 +361,17 @@ void work(const plant::PlantModel& model, const std::vector<record::Record>& rec
   const auto allowed = allowances({a.with.plant, hypothesis.conventions}, bench, after,
                                   hypothesis::free_of(hypothesis, options.calibrate.prior_sd));
   a.earns = true;
-  std::vector<calibrate::EventScore> scores;
   for (std::size_t e = 0; e < bench.all().size(); ++e) {
     AddedEvent event{
         calibrate::score_event(bench.all().whitened(e), before[e], after[e], bench.is_seen(e),
                                calibrate::pre_event_samples(bench.all()), options.calibrate.adequate),
         refitted[e].reduced_chi2()};
+    event.score.allowance = allowed[e];
     event.score.limit += allowed[e];
-    scores.push_back(event.score);
     a.earns = a.earns && (event.score.seen || event.improves() || event.score.adequate());
     a.events.push_back(std::move(event));
   }
-  a.ruling = thresholds::judged_by_events(scores);
+  a.ruling = thresholds::judged_by_events(a.scores());
   a.adequate = a.ruling.adequate;
   a.earns = a.earns && a.evidence > thresholds::addition.strong;
   a.model.plant = a.with.plant;

@@ -41,6 +41,8 @@ struct Addition {
   noise::WhitenedEvents prepared;  ///< the events with their noise model
   fit::Fit without, with;          ///< fits to the seen events without and with the effect
   double seconds = 0;              ///< processing time [s]
+  /// Returns the scores of `events`.
+  [[nodiscard]] std::vector<calibrate::EventScore> scores() const;
 };
 
 /// Returns the hypothesis of that name, ignoring case and blanks. Throws InputError with the effects that can

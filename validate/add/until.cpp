@@ -66,11 +66,12 @@ void work(const std::vector<record::Record>& records, const AddOptions& options,
     names += (names.empty() ? "" : ", ") + a.hypothesis.name;
     c.model = a.model;
     const bool done = a.adequate;
+    const std::string residual = calibrate::residual_text(a.scores());
     c.added.push_back(std::move(a));
     prune(c, records, options);
     if (done) {
       c.adequate = true;
-      c.sentence = "Adequate with " + names + ": the residual is noise in every event.";
+      c.sentence = "Adequate with " + names + ": " + residual + " in every event.";
       return;
     }
   }

@@ -420,7 +420,8 @@ class Calibrating {
     for (std::size_t e = 0; e < c_.prepared.size(); ++e) {
       EventScore s = score_event(c_.prepared.whitened(e), before_[e], after_[e], !out_[e],
                                  pre_event_samples(c_.prepared), options_.adequate);
-      s.limit += allowance_[e];
+      s.allowance = allowance_[e];
+      s.limit += s.allowance;
       adequate_before = adequate_before && thresholds::within_limit(s.before, s.limit);
       if (s.seen) {
         before += before_[e].chi2;
@@ -446,7 +447,7 @@ class Calibrating {
         fmt::format("reduced chi-square {:.3g} -> {:.3g}, noise limit {:.3g}", c_.before, c_.after, c_.limit);
     if (c_.adequacy == Adequacy::structure_poor) return poor_structure(left);
     if (c_.adequacy == Adequacy::adequate)
-      return "Adequate: the residual is noise before and after calibration (" + left + ").";
+      return "Adequate before and after calibration: " + residual_text(c_.events) + " (" + left + ").";
     std::vector<std::pair<double, std::string>> moves;
     for (const auto& p : c_.parameters)
       moves.emplace_back(
@@ -456,8 +457,8 @@ class Calibrating {
     std::string most;
     for (std::size_t k = 0; k < moves.size() && k < 3; ++k)
       if (moves[k].first > thresholds::parameters.moved) most += (most.empty() ? "" : ", ") + moves[k].second;
-    return "Structure adequate, parameters were poor: after calibration the residual is noise (" + left +
-           ")." + (most.empty() ? "" : " Largest changes, in standard errors: " + most + ".");
+    return "Structure adequate, parameters were poor: after calibration " + residual_text(c_.events) + " (" +
+           left + ")." + (most.empty() ? "" : " Largest changes, in standard errors: " + most + ".");
   }
   std::string poor_structure(const std::string& left) const {
     const EventScore* worst = &c_.events.front();

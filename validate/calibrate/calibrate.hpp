@@ -45,14 +45,19 @@ struct ChannelScore {
 };
 /// Reduced chi-square of one event before and after the calibration.
 struct EventScore {
-  std::string record;                  ///< name of the record
-  bool seen = true;                    ///< false: held out; only the event's own state was fitted
-  double before = 0, after = 0;        ///< reduced chi-square
-  double limit = 0;                    ///< limit of the reduced chi-square for noise alone
+  std::string record;            ///< name of the record
+  bool seen = true;              ///< false: held out; only the event's own state was fitted
+  double before = 0, after = 0;  ///< reduced chi-square
+  double limit = 0;              ///< limit of the reduced chi-square
+  /// Part of `limit` beyond that of noise alone: uncertainty of the fitted parameters in a held-out event,
+  /// and cost of the correction for voltage noise.
+  double allowance = 0;
   double colour = 0;                   ///< lag-1 autocorrelation of the pre-event residual
   std::vector<ChannelScore> channels;  ///< errors of each channel
   /// Whether the reduced chi-square after the calibration is within its limit.
   [[nodiscard]] bool adequate() const { return thresholds::within_limit(after, limit); }
+  /// Whether it is within the limit of noise alone.
+  [[nodiscard]] bool is_noise() const { return thresholds::within_limit(after, limit - allowance); }
 };
 
 /// Poorly identified direction in parameter space: moving along it hardly changes the simulated response.
@@ -151,6 +156,10 @@ double reduced_chi2_limit(const event::FitEvent& event, const fit::EventFit& fit
 /// about 0.02 if one direction dominates (a single square has a longer tail). `information` is that of the
 /// event, `covariance` that of the parameters, in the same units.
 double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& covariance, int values);
+
+/// Returns the clause on the residual of adequate events: "the residual is noise" or, if an event exceeds the
+/// limit of noise alone, that it is within the uncertainty of the fitted parameters, with the figures.
+std::string residual_text(const std::vector<EventScore>& events);
 
 /// Returns the reduced chi-square and channel errors of one event before and after. Both fits must use the
 /// noise of `event`; otherwise throws std::logic_error.

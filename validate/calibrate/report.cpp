@@ -155,10 +155,15 @@ std::string terminal_report(const Calibration& c) {
 std::string use_name(const EventScore& e) { return e.seen ? "fit" : "verification"; }
 
 json event_json(const EventScore& e) {
-  return {{"record", e.record},       {"seen", e.seen},
-          {"use", use_name(e)},       {"misfit_before", e.before},
-          {"misfit_after", e.after},  {"misfit_limit", e.limit},
-          {"adequate", e.adequate()}, {"noise_correlation", e.colour}};
+  return {{"record", e.record},
+          {"seen", e.seen},
+          {"use", use_name(e)},
+          {"misfit_before", e.before},
+          {"misfit_after", e.after},
+          {"misfit_limit", e.limit},
+          {"misfit_limit_noise", e.limit - e.allowance},
+          {"adequate", e.adequate()},
+          {"noise_correlation", e.colour}};
 }
 
 json calibration_json(const Calibration& c) {

@@ -72,6 +72,16 @@ double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixX
   return (mean + thresholds::adequacy.one_in_thousand * std::sqrt(std::max(variance, 0.0))) / values;
 }
 
+std::string residual_text(const std::vector<EventScore>& events) {
+  const auto of_noise = [](const EventScore& e) { return e.after / (e.limit - e.allowance); };
+  const auto most = std::ranges::max_element(events, {}, of_noise);
+  if (most == events.end() || most->is_noise()) return "the residual is noise";
+  return fmt::format(
+      "the residual is within noise and the uncertainty of the fitted parameters ({}: reduced chi-square {:.3g}, "
+      "limit {:.3g}, for noise alone {:.3g})",
+      most->record, most->after, most->limit, most->limit - most->allowance);
+}
+
 EventScore score_event(noise::WhitenedEvent whitened, const fit::EventFit& before, const fit::EventFit& after,
                        bool seen, int pre_event, double least) {
   const event::FitEvent& event = whitened.event;

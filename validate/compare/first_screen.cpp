@@ -131,11 +131,24 @@ double share_of_limit(const Fitness& fitness, const std::string& event, const st
 
 }  // namespace
 
-std::string headline(bool complete, const Fitness& fitness, const std::string& model) {
+std::string remainder_text(Remainder remainder) {
+  switch (remainder) {
+    case Remainder::noise:
+      return ": only noise remains";
+    case Remainder::uncertainty:
+      return ": noise and parameter uncertainty remain";
+    case Remainder::playback:
+      return ", but playback exceeds noise";
+  }
+  return {};
+}
+
+std::string headline(bool complete, const Fitness& fitness, const std::string& model, Remainder remainder) {
   const bool judged = fitness.not_judged.empty();
-  if (complete)
-    return judged && !fitness.fit ? "Only noise remains, but limits are exceeded"
-                                  : model + " matches: only noise remains";
+  if (complete && judged && !fitness.fit)
+    return remainder == Remainder::noise ? "Only noise remains, but limits are exceeded"
+                                         : "The fit is adequate, but limits are exceeded";
+  if (complete) return model + " matches" + remainder_text(remainder);
   if (judged && fitness.fit) return "Fit for purpose, but errors exceed noise";
   return model + " does not match the records";
 }
@@ -159,6 +172,20 @@ ChannelError channel_error(const Fitness& fitness, const EventComparison& event,
                : error.bound > 1 && c.judged ? report::Tone::warn
                                              : report::Tone::good;
   return error;
+}
+
+std::vector<std::string> beyond_noise(const Played& played) {
+  std::vector<std::string> all;
+  for (const auto& e : played.events)
+    for (const auto& c : e.channels)
+      if (c.judged && channel_error(played.fitness, e, c).bound > 1)
+        all.push_back(c.name + " of " + e.record.name);
+  return all;
+}
+
+Remainder remainder_of(const Played& played, bool noise_alone) {
+  if (!beyond_noise(played).empty()) return Remainder::playback;
+  return noise_alone ? Remainder::noise : Remainder::uncertainty;
 }
 
 std::pair<double, std::size_t> largest_rms_over_noise(const Played& played) {

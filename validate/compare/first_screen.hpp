@@ -11,18 +11,32 @@
 
 namespace swingbank::validate::compare {
 
+/// Remainder of a model that is statistically complete.
+enum class Remainder {
+  noise,        ///< noise alone
+  uncertainty,  ///< of a held-out event: noise and the uncertainty of the fitted parameters
+  playback,     ///< the shown playback exceeds noise, which the verdict of a fit does not require
+};
+/// Returns the clause for a headline: ": only noise remains".
+std::string remainder_text(Remainder remainder);
 /// Returns the verdict in at most eight words; `model`: for example "Calibrated model".
-std::string headline(bool complete, const Fitness& fitness, const std::string& model = "Model");
+std::string headline(bool complete, const Fitness& fitness, const std::string& model = "Model",
+                     Remainder remainder = Remainder::noise);
 
 /// Error of one channel of one event against its bounds and limits.
 struct ChannelError {
   double bound = 0;   ///< largest normalised RMS / bound of all bins; above 1: more than noise
   int window = -1;    ///< window of the largest ratio; -1: no bins
-  double limit = 0;   ///< largest ratio of an error to its engineering limit; above 1: exceeds it
+  double limit = 0;   ///< largest ratio of an error to its engineering limit
   report::Tone tone;  ///< good: noise; warn: more than noise; bad: exceeds a limit
 };
 /// Returns the error of a channel, judged by the limits of `fitness`.
 ChannelError channel_error(const Fitness& fitness, const EventComparison& event, const ChannelComparison& c);
+
+/// Returns the judged channels above their noise bounds: "Q of event3.csv".
+std::vector<std::string> beyond_noise(const Played& played);
+/// Returns the remainder of a complete model. `noise_alone`: every event is within the limit of noise alone.
+Remainder remainder_of(const Played& played, bool noise_alone);
 
 /// Content of a report's first screen.
 struct FirstScreen {

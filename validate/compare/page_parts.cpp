@@ -1,10 +1,12 @@
 #include "validate/compare/page_parts.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <ranges>
 
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/error_table.hpp"
@@ -145,6 +147,21 @@ std::vector<std::string> records_of(const std::vector<Played>& played) {
   return names;
 }
 
+/// Returns why the verdict of a fit and the error map of the playback differ; empty if they agree.
+std::string difference_text(const CommandPage& p) {
+  const std::vector<std::string> beyond = beyond_noise(p.played.back());
+  if (!p.complete || beyond.empty()) return {};
+  constexpr std::size_t kListedChannels = 3;
+  std::string channels = fmt::format("{}", fmt::join(beyond | std::views::take(kListedChannels), ", "));
+  if (beyond.size() > kListedChannels)
+    channels += fmt::format(" and {} others", beyond.size() - kListedChannels);
+  return fmt::format(
+      "Statistically complete by the reduced chi-square, which averages over each event and, in held-out events, "
+      "allows for the uncertainty of the parameters. The error map tests each window and band without that "
+      "allowance: {} above the noise bound.",
+      channels + (beyond.size() == 1 ? " is" : " are"));
+}
+
 /// Returns the screen of a command whose last model is the result.
 FirstScreen screen_of(const CommandPage& p) {
   FirstScreen s;
@@ -156,8 +173,10 @@ FirstScreen screen_of(const CommandPage& p) {
                    : complete_text(p.complete, p.sentence)};
   if (std::string use = p.use.sentence(records_of(p.played)); !use.empty())
     s.reasons.push_back(std::move(use));
+  const std::string difference = difference_text(p);
+  if (!difference.empty()) s.reasons.push_back(difference);
   const bool fit = fitness.not_judged.empty() ? fitness.fit : p.complete;
-  s.tone = p.complete && fit   ? report::Tone::good
+  s.tone = p.complete && fit   ? difference.empty() ? report::Tone::good : report::Tone::warn
            : fit || p.complete ? report::Tone::warn
                                : report::Tone::bad;
   s.before = &p.played.front();
@@ -283,7 +302,7 @@ void glossary_part(report::Document& page) {
 std::string headline_of(const CommandPage& p) {
   if (!p.headline.empty()) return p.headline;
   const std::string model = p.played.size() > 1 ? model_title(p.played.back().name) : "Model";
-  return headline(p.complete, p.played.back().fitness, model);
+  return headline(p.complete, p.played.back().fitness, model, remainder_of(p.played.back(), p.noise_alone));
 }
 
 std::string command_html(const CommandPage& p) {

@@ -43,6 +43,7 @@ struct CommandPage {
   std::string headline = {};               ///< verdict in at most eight words; empty: that of compare
   std::string next = {};                   ///< next command; empty: none
   bool complete = false;                   ///< statistically complete: the residual is noise
+  bool noise_alone = true;                 ///< without the uncertainty of fitted parameters
   std::string sentence;                    ///< verdict in words
   std::vector<Played> played;              ///< models with their comparisons, in order
   std::vector<PageParameter> parameters;   ///< table of parameters; may be empty

@@ -1,4 +1,6 @@
-// Allowance for parameter errors on an event outside the fit: its limit is exceeded once in a thousand.
+// Allowance for parameter errors on an event outside the fit: its limit is exceeded once in a thousand, and
+// the verdict names an event that only the allowance accepts.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -37,6 +39,21 @@ TEST(UnseenAllowance, IsExceededRarelyButNotNever) {
 TEST(UnseenAllowance, IsZero_WhenTheParametersAreKnown) {
   const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(4, 4);
   EXPECT_EQ(unseen_allowance(information, Eigen::MatrixXd::Zero(4, 4), 100), 0);
+}
+
+TEST(ResidualText, NamesTheEventThatOnlyTheAllowanceAccepts) {
+  EventScore seen{.record = "a.csv", .after = 1.1, .limit = 1.2, .channels = {}};
+  EventScore held_out{
+      .record = "b.csv", .seen = false, .after = 5.08, .limit = 18.2, .allowance = 16.9, .channels = {}};
+  EXPECT_TRUE(held_out.adequate());
+  EXPECT_FALSE(held_out.is_noise());
+  EXPECT_EQ(residual_text({seen}), "the residual is noise");
+  EXPECT_EQ(
+      residual_text({seen, held_out}),
+      "the residual is within noise and the uncertainty of the fitted parameters (b.csv: reduced chi-square "
+      "5.08, limit 18.2, for noise alone 1.3)");
+  held_out.after = 1.25;
+  EXPECT_EQ(residual_text({seen, held_out}), "the residual is noise");
 }
 
 }  // namespace

@@ -164,13 +164,45 @@ TEST(CompareReportTest, HeadlinesHaveAtMostEightWords) {
   Fitness fit, unfit;
   fit.fit = true;
   for (const bool complete : {false, true})
-    for (const Fitness* f : {&fit, &unfit}) {
-      const std::string text = headline(complete, *f, "Calibrated model");
-      EXPECT_LE(std::ranges::count(text, ' '), 7) << text;
-    }
+    for (const auto remainder : {Remainder::noise, Remainder::uncertainty, Remainder::playback})
+      for (const Fitness* f : {&fit, &unfit}) {
+        const std::string text = headline(complete, *f, "Calibrated model", remainder);
+        EXPECT_LE(std::ranges::count(text, ' '), 7) << text;
+        EXPECT_TRUE(remainder == Remainder::noise || text.find("nly noise") == std::string::npos) << text;
+      }
   EXPECT_EQ(headline(true, fit), "Model matches: only noise remains");
   EXPECT_EQ(headline(false, unfit), "Model does not match the records");
   EXPECT_EQ(headline(true, unfit), "Only noise remains, but limits are exceeded");
+}
+// A fit is judged by the chi-square of whole events, the error map by window and band: where a channel is
+// marked as above noise, the page does not claim that only noise remains.
+TEST(CompareReportTest, PageOfAFitStatesWhyPlaybackExceedsNoise) {
+  std::vector<EventComparison> events = {example_event()};
+  judge(events);
+  CommandPage page;
+  page.complete = true;
+  page.sentence = "The residual is noise.";
+  page.played = {{"submitted", events, fitness_of(events)}, {"calibrated", events, fitness_of(events)}};
+  for (Played& p : page.played) p.fitness.fit = true;
+  EXPECT_THAT(beyond_noise(page.played.back()), testing::Contains("Q of avr_ev1.csv"));
+  std::string html = command_html(page);
+  EXPECT_EQ(headline_of(page), "Calibrated model matches, but playback exceeds noise");
+  EXPECT_THAT(html, HasSubstr("class=\"headline warn\""));
+  EXPECT_THAT(html, HasSubstr("Q of avr_ev1.csv"));
+  EXPECT_THAT(html, HasSubstr("above the noise bound."));
+  for (auto& channel : page.played.back().events[0].channels) {
+    channel.map.whole.bound = 1e9;
+    for (auto& row : channel.map.rows) {
+      row.all.bound = 1e9;
+      for (auto& bin : row.bands) bin.bound = 1e9;
+    }
+  }
+  html = command_html(page);
+  EXPECT_EQ(headline_of(page), "Calibrated model matches: only noise remains");
+  EXPECT_THAT(html, HasSubstr("class=\"headline good\""));
+  EXPECT_THAT(html, testing::Not(HasSubstr("above the noise bound.")));
+  page.noise_alone = false;
+  EXPECT_EQ(headline_of(page), "Calibrated model matches: noise and parameter uncertainty remain");
 }
 TEST(CompareReportTest, MapCellsShowPercentOfMvaAndNoise) {
   std::vector<EventComparison> events = {example_event()};
