@@ -46,9 +46,11 @@ Json with_key(const KeyPath& path, bool present) {
   return nested(path, {{"required", Json::array({path.back()})}}, present);
 }
 Json without_key(const KeyPath& path) {
-  return nested(path, {{"not", {{"required", Json::array({path.back()})}}}}, false);
+  return nested(path, {{"properties", {{path.back(), false}}}}, false);
 }
 Json negated(const Json& schema) { return schema.contains("not") ? schema["not"] : Json{{"not", schema}}; }
+
+Json all_of(const Json& schemas) { return schemas.size() == 1 ? schemas.front() : Json{{"allOf", schemas}}; }
 
 /// Returns the condition that the decision has one of the outcomes; `path` is its key seen from the table.
 Json has_outcome(const KeyDecision& decision, const KeyPath& path, const std::vector<std::size_t>& outcomes) {
@@ -89,7 +91,7 @@ class Explorer {
     for (const auto& group : groups_) constrain(group);
     open_tables();
     Json definitions = Json::object();
-    Json schema = {{"$schema", "http://json-schema.org/draft-04/schema#"}, {"title", title}};
+    Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
     schema.update(tree_.schema(definitions));
     if (!definitions.empty()) schema["definitions"] = definitions;
     return schema;
@@ -142,27 +144,30 @@ class Explorer {
         for (const KeyPath& path : *paths)
           while (!begins_with(path, table)) table.pop_back();
     const KeyPath key = below(group.decision.path, table);
-    Json any = Json::array();
+    Json context = Json::array();
     for (const Decided& a : group.context) {
       if (!begins_with(a.decision.path, table)) continue;  // implied by the presence of the table
       const KeyPath path = below(a.decision.path, table);
       if (!is_single(path)) return;
-      any.push_back(negated(has_outcome(a.decision, path, {a.outcome})));
+      context.push_back(has_outcome(a.decision, path, {a.outcome}));
     }
     if (!is_single(key)) return;
+    // One condition for each consequence, so that an error names its key, not all alternatives.
     for (const Consequence& c : all) {
-      Json both = Json::array({has_outcome(group.decision, key, c.outcomes)});
+      Json follows = Json::array();
       std::map<KeyPath, Json> together;  // required keys by their table
       for (const KeyPath& p : c.required) together[table_of(p)].push_back(p.back());
       for (const auto& [of, keys] : together) {
         KeyPath any_key = below(of, table);
         any_key.emplace_back();
-        both.push_back(nested(any_key, {{"required", keys}}, false));
+        follows.push_back(nested(any_key, {{"required", keys}}, false));
       }
-      for (const KeyPath& p : c.unknown) both.push_back(without_key(below(p, table)));
-      any.push_back(both.size() == 1 ? both.front() : Json{{"allOf", both}});
+      for (const KeyPath& p : c.unknown) follows.push_back(without_key(below(p, table)));
+      if (follows.empty()) continue;
+      Json decided = context;
+      decided.push_back(has_outcome(group.decision, key, c.outcomes));
+      tree_.constrain(table, {{"if", all_of(decided)}, {"then", all_of(follows)}});
     }
-    tree_.constrain(table, {{"anyOf", any}});
   }
 
   /// Returns the consequences of a decision's outcomes; outcomes with the same consequences are together.
@@ -235,7 +240,7 @@ class Explorer {
       closed.try_emplace(table.opened_by, Json::array()).first->second.push_back(nested(path, known, false));
     }
     for (const auto& [key, conditions] : closed)
-      tree_.constrain({}, {{"anyOf", Json::array({with_key({key}, true), Json{{"allOf", conditions}}})}});
+      tree_.constrain({}, {{"if", negated(with_key({key}, true))}, {"then", all_of(conditions)}});
   }
 
   const std::function<void(Config&)>& read_;

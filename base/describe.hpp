@@ -1,5 +1,5 @@
 #pragma once
-// JSON Schema (draft 4) of a TOML file, derived from the function that reads it.
+// JSON Schema (draft 7) of a TOML file, derived from the function that reads it.
 #include <functional>
 #include <string>
 

@@ -32,6 +32,38 @@ Json schema_of(const KeyForm& form) {
   return one;
 }
 
+/// Returns alternatives with their conditions: a value is checked against the alternative whose condition it
+/// meets, so that an error names its key. `all` has what every alternative requires. With `tables`, editors
+/// that know no conditions find the alternatives' keys in an anyOf, which {} always fulfils.
+Json choose(const std::vector<std::pair<Json, Json>>& alternatives, Json all, bool tables) {
+  Json any = Json::array({Json::object()}), conditions = Json::array();
+  for (const auto& [condition, schema] : alternatives) {
+    any.push_back(schema);
+    conditions.push_back({{"if", condition}, {"then", schema}});
+  }
+  if (tables) conditions.insert(conditions.begin(), Json{{"anyOf", any}});
+  all["allOf"] = conditions;
+  return all;
+}
+
+/// Returns alternatives of different types; anyOf if types coincide.
+Json choose_by_type(const Json& alternatives, bool tables) {
+  if (alternatives.size() == 1) return alternatives.front();
+  std::vector<std::pair<Json, Json>> by_type;
+  Json types = Json::array();
+  for (const Json& one : alternatives) {
+    const std::string type = one.contains("type") && one["type"].is_string() ? one["type"] : Json("");
+    const bool numbers = type == "number" || type == "integer";
+    if (type.empty() || std::ranges::any_of(types, [&](const Json& t) {
+          return t == type || (numbers && (t == "number" || t == "integer"));
+        }))
+      return {{"anyOf", alternatives}};
+    types.push_back(type);
+    by_type.emplace_back(Json{{"type", type}}, one);
+  }
+  return choose(by_type, {{"type", types}}, tables);
+}
+
 bool is_any(const std::string& name) { return name == kAnyName || name == "[]"; }
 bool is_branch(const std::string& name) { return name.starts_with('='); }
 
@@ -117,7 +149,7 @@ Json KeyTree::forms() const {
   if (any.front().contains("description")) all["description"] = any.front()["description"];
   for (Json& form : any)
     if (form.value("description", "") == all.value("description", "")) form.erase("description");
-  all["anyOf"] = any;
+  all.update(choose_by_type(any, false));
   return all;
 }
 
@@ -150,7 +182,12 @@ Json KeyTree::object(const std::vector<const KeyTree*>& parts, const std::string
 }
 
 Json KeyTree::branches(Json& definitions) const {
-  Json one_of = Json::array();
+  std::vector<std::pair<Json, Json>> alternatives;
+  const auto is_word = [&](const std::string& word) {
+    return Json{{"type", "object"},
+                {"properties", {{branch_.key, {{"enum", Json::array({word})}}}}},
+                {"required", Json::array({branch_.key})}};
+  };
   for (std::size_t k = 0; k < branch_.words.size(); ++k) {
     const std::string& word = branch_.words[k];
     const auto found =
@@ -161,15 +198,14 @@ Json KeyTree::branches(Json& definitions) const {
     std::string name = word;
     while (definitions.contains(name) && definitions[name] != keys) name += "_";
     definitions[name] = std::move(keys);
-    one_of.push_back({{"$ref", "#/definitions/" + name}});
+    alternatives.emplace_back(is_word(word), Json{{"$ref", "#/definitions/" + name}});
   }
-  if (!branch_.opened_by.empty()) {
-    const Json other = {{"type", "string"}, {"not", {{"enum", branch_.words}}}};
-    one_of.push_back({{"type", "object"},
-                      {"properties", {{branch_.key, other}}},
-                      {"required", Json::array({branch_.key})}});
-  }
-  return {{"oneOf", one_of}};
+  Json key = {{"type", "string"}};
+  if (branch_.opened_by.empty()) key["enum"] = branch_.words;
+  return choose(
+      alternatives,
+      {{"type", "object"}, {"properties", {{branch_.key, key}}}, {"required", Json::array({branch_.key})}},
+      true);
 }
 
 Json KeyTree::value(Json& definitions) const {
@@ -179,7 +215,7 @@ Json KeyTree::value(Json& definitions) const {
     any.push_back(branch_.key.empty() ? object({this}, "", definitions) : branches(definitions));
   for (const auto& [name, node] : children_)
     if (name == "[]") any.push_back({{"type", "array"}, {"items", node->value(definitions)}});
-  return any.size() == 1 ? any.front() : Json{{"anyOf", any}};
+  return choose_by_type(any, true);
 }
 
 Json KeyTree::schema(Json& definitions) const { return object({this}, "", definitions); }

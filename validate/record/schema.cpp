@@ -69,7 +69,7 @@ std::string record_schema() {
   const SchemaJson power = {
       {"anyOf", SchemaJson::array({both(Quantity::P, Quantity::Q), both(Quantity::I, Quantity::phi)})}};
   const SchemaJson schema = {
-      {"$schema", "http://json-schema.org/draft-04/schema#"},
+      {"$schema", "http://json-schema.org/draft-07/schema#"},
       {"title", "Row of a record of Swingbank"},
       {"description",
        "One row of a text file by its column names. null: no value. Columns of other names are left out, unless "
