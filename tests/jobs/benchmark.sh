@@ -182,6 +182,11 @@ grep -q 'sise' "$work/stderr" || fail "the unknown key is not reported with it"
 sed 's/4.5\]/45.0]/; s/7.5\]/75.0]/' tests.toml >long.toml
 refuses "a window after the record" "window post of test 'dip'" refused --model right.toml --tests long.toml --records dip.csv vref.csv
 grep -q "window post of test 'vref'" "$work/stderr" || fail "the second window is not reported with it"
+# The results fit their schema; other content does not.
+for result in same other against currents; do fits_schema_of benchmark $result/benchmark.json; done
+sed 's/"passed": [0-9]*/"passed": -1/' other/benchmark.json >altered.json
+(fits_schema_of benchmark altered.json) 2>/dev/null && fail "the schema accepts a negative number of tests"
+
 mkdir cut
 sed "100s/,[^,]*\$//" dip.csv >cut/dip.csv
 refuses "a line without a value" 'dip.csv:100' refused --model right.toml --tests tests.toml --records cut/dip.csv vref.csv

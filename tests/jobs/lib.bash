@@ -57,8 +57,11 @@ leaves_nothing() {
 }
 
 # fits_schema FILE...: JSON results have the common part that docs/reference/report.schema.json describes
-fits_schema() {
-  python3 - "$SWINGBANK_SOURCE/docs/reference/report.schema.json" "$@" <<'PYTHON' || fail "not as the schema describes it"
+fits_schema() { fits_schema_of report "$@"; }
+
+# fits_schema_of NAME FILE...: the same of docs/reference/NAME.schema.json
+fits_schema_of() {
+  python3 - "$SWINGBANK_SOURCE/docs/reference/$1.schema.json" "${@:2}" <<'PYTHON' || fail "not as the schema describes it"
 import json, sys
 import jsonschema
 schema, *files = [json.load(open(f)) for f in sys.argv[1:]]
