@@ -44,6 +44,7 @@ class Check : Findings {
     quantised();
     if (plant_.synchronous && r_.angle == record::AngleSource::measured)
       steps();  // requires measured phasors
+    if (plant_.synchronous) signs();
     return taken();
   }
 
@@ -352,6 +353,13 @@ class Check : Findings {
       refuse("wrong_base", doubt->what, doubt->why, doubt->remedy);
     else if (const auto apart = dispatch_doubt(r_, plant_, {signals_.P.level, signals_.Q.level}))
       warn("dispatch", apart->what, apart->why, apart->remedy);
+  }
+
+  /// Warns of doubtful signs, unless the steps of the phasors have decided.
+  void signs() {
+    if (found("swapped_channels") || found("q_sign") || found("power_sign")) return;
+    if (const auto doubt = sign_doubt(r_, plant_, signals_.P.level, steps_, signals_.Q.white))
+      warn(signals_.P.level < 0 ? "power_sign" : "q_sign", doubt->what, doubt->why, doubt->remedy);
   }
 
   void steps() {

@@ -78,6 +78,43 @@ TEST_F(ReadingsTest, SignsAndExchangedColumnsAreReported) {
   std::swap(r.P, r.Q);
   EXPECT_EQ(kind(r), "swapped_channels");
 }
+/// Without angle and dispatch, and with a model too wrong for a playback to decide, the steps of |V| and Q
+/// decide.
+TEST(SignsWithoutAngle, ReversedAndExchangedPowersAreReported) {
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  PlantFacts facts = plant_facts(model);
+  facts.dispatch.reset();
+  const auto finding = [&](const record::Record& r) -> std::string {
+    for (const Finding& f : check_record(r, facts))
+      if (f.kind == "q_sign" || f.kind == "power_sign" || f.kind == "swapped_channels")
+        return fmt::format("{} {}: {}", f.kind, f.severity == Severity::warn ? "warning" : "refusal",
+                           f.problem.sentence());
+    return {};
+  };
+  for (int i = 1; i <= 4; ++i) {
+    record::Record r = record::read_record(
+        test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", i)), model.record_base);
+    r.angle = record::AngleSource::none;
+    EXPECT_EQ(finding(r), "") << i;
+    record::Record other = r;
+    for (double& q : other.Q) q = -q;
+    EXPECT_THAT(finding(other), AllOf(HasSubstr("q_sign warning: Q rises with V"), HasSubstr("Q=-NAME")))
+        << i;
+    for (double& p : other.P) p = -p;
+    EXPECT_THAT(finding(other), AllOf(HasSubstr("power_sign warning: P = -"), HasSubstr("P=-NAME,Q=-NAME")))
+        << i;
+    other = r;
+    for (double& p : other.P) p = -p;
+    EXPECT_THAT(finding(other), HasSubstr("power_sign warning: P = -")) << i;
+    facts.dispatch = {-40, 10, 1};  // a pump
+    EXPECT_EQ(finding(other), "") << i;
+    facts.dispatch.reset();
+    other = r;
+    std::swap(other.P, other.Q);
+    if (i == 4) continue;  // there P rises at the voltage dip, as Q does
+    EXPECT_THAT(finding(other), HasSubstr("P and Q are exchanged")) << i;
+  }
+}
 /// The example's model lacks the exciter of the recorded machine: a model error, not a wrong reading of the
 /// record.
 TEST(ReadingsOfAWrongModel, AreNotReported) {

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 namespace swingbank::validate::check {
 
@@ -87,6 +90,58 @@ std::optional<Doubt> dispatch_doubt(const record::Record& r, const PlantFacts& p
     doubt.remedy = "check base_mva under [record] of the plant file";
   }
   return doubt;
+}
+
+namespace {
+
+/// Returns the least change of Q with |V| at the steps [-], with P and Q in time, a sample late and a
+/// sample early; 0 if it is not above noise. Behind E'' and X'', Q = V (E'' cos(delta) - V) / X'': it falls
+/// where V rises if the two values of V together exceed E'', which is below 1.3 pu.
+double change_of_Q(const record::Record& r, const std::vector<switching::StepInterval>& steps, double noise) {
+  constexpr double kLargestE = 1.3, kSure = 5;  // pu; standard deviations
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [early, late] : {std::pair<std::size_t, std::size_t>{0, 0}, {0, 1}, {1, 0}}) {
+    double product = 0, square = 0;
+    for (const switching::StepInterval& s : steps) {
+      if (s.before < early || s.after + late >= r.V.size() || r.V[s.before] + r.V[s.after] < kLargestE)
+        continue;
+      const double dV = r.V[s.after] - r.V[s.before];
+      product += dV * (r.Q[s.after + late] - r.Q[s.before - early]);
+      square += dV * dV;
+    }
+    if (!(product > kSure * noise * std::sqrt(2 * square))) return 0;
+    least = std::min(least, product / square);
+  }
+  return least;
+}
+
+}  // namespace
+
+std::optional<Doubt> sign_doubt(const record::Record& r, const PlantFacts& plant, double P,
+                                const std::vector<switching::StepInterval>& steps, double noise) {
+  constexpr double kMotor = 0.05;  // pu of the machine; condensers take a few per cent
+  const double rises = change_of_Q(r, steps, noise);
+  const bool with_V = rises > 0;
+  const bool negative = plant.mva > 0 && P * r.base.mva < -kMotor * plant.mva &&
+                        !(plant.dispatch && plant.dispatch->P < 0);  // a pump or a condenser
+  const std::string mw = fmt::format("P = {:.4g} MW before the event", P * r.base.mva);
+  const std::string rise =
+      fmt::format("Q rises with V at its steps, by {:.4g} Mvar per pu", rises * r.base.mva);
+  if (negative && with_V)
+    return Doubt{mw + ", and " + rise, "P and Q may count into the machine, or be exchanged",
+                 "check them; --columns P=-NAME,Q=-NAME reverses both signs"};
+  if (with_V)
+    return Doubt{
+        rise,
+        "the Q of a synchronous machine falls where V rises: its sign is reversed, or P and Q are exchanged",
+        "check it; --columns Q=-NAME reverses the sign"};
+  if (negative)
+    return Doubt{
+        mw,
+        "a generator's is positive: P counts into the machine, or it is exchanged with Q, or the machine "
+        "runs as a motor",
+        "check it; --columns P=-NAME reverses the sign"};
+  return std::nullopt;
 }
 
 }  // namespace swingbank::validate::check

@@ -6,6 +6,7 @@
 
 #include "base/complex.hpp"
 #include "validate/check/check.hpp"
+#include "validate/switching/step_intervals.hpp"
 
 namespace swingbank::validate::check {
 
@@ -28,5 +29,11 @@ std::optional<Doubt> base_doubt(const record::Record& record, const PlantFacts& 
 /// Returns the ratio to the unit's output in its case, with a possible cause, if it differs by more than
 /// usual redispatch explains.
 std::optional<Doubt> dispatch_doubt(const record::Record& record, const PlantFacts& plant, Complex power);
+
+/// Returns why the signs of P and Q, or their order, are doubtful for a synchronous machine, from P before
+/// the event [pu on the record's base] and the steps of |V| and Q; none if they are not. `noise`: standard
+/// deviation of Q [pu on the record's base]. It needs no angle and no dispatch.
+std::optional<Doubt> sign_doubt(const record::Record& record, const PlantFacts& plant, double P,
+                                const std::vector<switching::StepInterval>& steps, double noise);
 
 }  // namespace swingbank::validate::check
