@@ -45,7 +45,7 @@ namespace swingbank::sim {
 enum class Slot {
   machine,         ///< the source: a synchronous machine or a converter (Effect::converter)
   transformer,     ///< between the machine's terminal and the grid
-  compensator,     ///< outputs Vc, the voltage that the exciter regulates
+  compensator,     ///< outputs Vc, the compensated voltage that the exciter regulates
   setpoint,        ///< outputs dVref, dPref, dGref
   governor,        ///< outputs Tm
   shaft,           ///< changes Tm after the governor: torques on the shaft that do not depend on the governor

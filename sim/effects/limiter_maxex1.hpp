@@ -21,9 +21,9 @@ struct Model {
   0.01 s d Em/dt = Efd - Em        e = Em/EFDRATED
   T(e): straight through (EFD1, TIME1), (EFD2, TIME2), (EFD3, TIME3), TIME3 beyond
   d timer/dt = 1/T(e)       while e > EFD1 and timer < 1      (at constant e it takes T(e))
-             = -10/s timer  while e <= EFD1 and timer < 1     (reset, within 0.1 s)
-             = 1/s          from timer = 1 on, up to 2        (operated, permanently)
-  Voel = KMX (EFDDES - e) EFDRATED within [VLOW, 0] once operated; it fades in within 0.01 s
+             = -10/s timer  while e <= EFD1 and timer < 1     (reset with time constant 0.1 s)
+             = 1/s          while 1 <= timer < 2             (timed out, permanently)
+  Voel = KMX (EFDDES - e) EFDRATED within [VLOW, 0] once timed out; it fades in within 0.01 s
   Vlimiter = Vlimiter + Voel
 )";
   using Timing = shared::InverseTime;
@@ -46,7 +46,7 @@ struct Model {
   static constexpr int dyr_columns[] = {EFDRATED, EFD1, TIME1, EFD2, TIME2, EFD3, TIME3, EFDDES, KMX, VLOW};
   enum C { timing, wanted = timing + Timing::size, gain, low, zero, top, coefficients };
   enum X { timer, Em };
-  static constexpr State states[] = {{"timer", "-", "progress of the timer (1: operated)", 1.0, zero, top},
+  static constexpr State states[] = {{"timer", "-", "progress of the timer (1: timed out)", 1.0, zero, top},
                                      {"Em", "pu", "measured field voltage"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {

@@ -15,9 +15,9 @@ struct Model {
   i = Ifd/EFDRATED (M = 1) or Efd/EFDRATED (M = 0)
   T(i): straight through (EFD1, TIME1), (EFD2, TIME2), (EFD3, TIME3), TIME3 beyond
   d timer/dt = 1/T(i)       while i > EFD1 and timer < 1      (at constant i it takes T(i))
-             = -10/s timer  while i <= EFD1 and timer < 1     (reset, within 0.1 s)
-             = 1/s          from timer = 1 on, up to 2        (operated, permanently)
-  d Voel/dt = KMX (EFDDES - i) EFDRATED once operated, VLOW <= Voel <= 0, non-windup
+             = -10/s timer  while i <= EFD1 and timer < 1     (reset with time constant 0.1 s)
+             = 1/s          while 1 <= timer < 2             (timed out, permanently)
+  d Voel/dt = KMX (EFDDES - i) EFDRATED once timed out, VLOW <= Voel <= 0, non-windup
   Vlimiter = Vlimiter + Voel
 )";
   using Timing = shared::InverseTime;
@@ -26,7 +26,7 @@ struct Model {
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"M", "M", "code", 1.0, 0.0, 1.0, kNoNullValue, "limited quantity: 0 field voltage, 1 field current",
-       literature::own("the field current heats the field"), shared::kCode},
+       literature::own("field current determines field-winding heating"), shared::kCode},
       {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNullValue, "rated field current",
        literature::own(
            "field current of a loaded machine with Xd = 1.8, in units of the air-gap line; CIM has 1.05")},
@@ -44,7 +44,7 @@ struct Model {
                                         EFD3, TIME3,    EFDDES, KMX,   VLOW};
   enum C { timing, current = timing + Timing::size, wanted, gain, low, zero, top, coefficients };
   enum X { timer, Voel };
-  static constexpr State states[] = {{"timer", "-", "progress of the timer (1: operated)", 1.0, zero, top},
+  static constexpr State states[] = {{"timer", "-", "progress of the timer (1: timed out)", 1.0, zero, top},
                                      {"Voel", "pu", "output", 1.0, low, zero}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {

@@ -18,24 +18,24 @@ struct Model {
       name = "OEL1",
       title = "over-excitation limiter with runback of the reference",
       source =
-          "PowerWorld, OEL1 (equations, as of PSLF's oel1); J. Eisenbarth, oel1_dyd.m (columns of PSLF's "
+          "PowerWorld, OEL1 (equations identical to PSLF oel1); J. Eisenbarth, oel1_dyd.m (columns of PSLF "
           "oel1; github.com/JEisenbarth/MatlabPowerWorld_NumericalComp_FullWECC_CHJ1_RealPMU_XFMR, 593d84e)",
       dyr_name = "OEL1";
   static constexpr Slot slot = Slot::limiter;
   static constexpr std::string_view variant_of = "MAXEX2";
   static constexpr std::string_view description = R"(
   i = Ifd (Vfdflag = 0) or Efd (Vfdflag = 1)
-  d timer/dt = (i - Ifdset)/Tpickup  while i > Ifdset and timer < 1, Tpickup > 0    (Tpickup at 1 pu beyond)
+  d timer/dt = (i - Ifdset)/Tpickup  while i > Ifdset and timer < 1, Tpickup > 0    (Tpickup: operating time at 1 pu above)
              = 1/|Tpickup|           while i > Ifdset and timer < 1, Tpickup < 0    (definite time)
              = 0                     while Ifcont < i <= Ifdset and timer < 1
-             = 1/s                   while i > Ifcont from timer = 1 on, up to 2    (operated)
-             = -20/s timer           while i <= Ifcont                             (reset, within 0.1 s)
-  d Voel/dt = -1/Runback             while operated and i > Ifcont, Runback > 0    (otherwise constant)
-  0.01 s d Voel/dt = Runback - Voel  while operated, Runback < 0                   (stays)
+             = 1/s                   while i > Ifcont and 1 <= timer < 2            (timed out)
+             = -20/s timer           while i <= Ifcont                             (reset with time constant 0.05 s)
+  d Voel/dt = -1/Runback             while timed out and i > Ifcont, Runback > 0   (otherwise constant)
+  0.01 s d Voel/dt = Runback - Voel  while timed out, Runback < 0                  (remains after reset)
   Vlimiter = Vlimiter + Voel (Alarm = 0), unchanged (Alarm = 1)
-  Not modelled, with a remark: the hard limit of the exciter's output at Ifdmax, or at Ifcont for Runback = 0 (its
-  action on an exciter is not public), and the trips of the generator after Tmax and Tset.
-  A .dyr is read in the order of PSLF's .dyd, the only public one.
+  Not modelled (a warning is issued): the hard limit of the exciter's output at Ifdmax, or at Ifcont for Runback = 0
+  (its action on an exciter is not published), and the trips of the generator after Tmax and Tset.
+  A .dyr is read in the parameter order of the PSLF .dyd, the only published one.
 )";
   enum P { Ifdset, Ifdmax, Tpickup, Runback, Tmax, Tset, Ifcont, Vfdflag, Alarm };
   static constexpr Source defaults_from = literature::own("no public file has the model");
@@ -43,30 +43,30 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"Ifdset", "Ifdset", "pu", 2.86, 0.5, 20.0, kNoNullValue, "pickup",
        literature::own("1.1 times the rated field current of MAXEX2")},
-      upper_limit({"Ifdmax", "Ifdmax", "pu", 4.0, -1.0, 20.0, kNoNullValue, "hard limit (no effect)",
+      upper_limit({"Ifdmax", "Ifdmax", "pu", 4.0, -1.0, 20.0, kNoNullValue, "hard limit (read, not modelled)",
                    literature::own("1.5 times the rated field current of MAXEX2")}),
       {"Tpickup", "Tpickup", "s", 10.0, -1000.0, 1000.0, kNoNullValue,
        "operating time at 1 pu above the pickup; < 0: definite time",
        literature::own("a few tens of seconds at a moderate overload")},
       {"Runback", "Runback", "s/pu", 100.0, -1.0, 10000.0, kNoNullValue,
-       "> 0: 1/Runback is the rate of the reference; < 0: the addition to it [pu]",
+       "> 0: inverse runback rate [s/pu]; < 0: step of the reference [pu]",
        literature::own("a hundredth of the voltage each second")},
-      {"Tmax", "Tmax", "s", 0.0, 0.0, 1000.0, kNoNullValue, "time beyond Ifdmax to a trip (no effect)"},
-      {"Tset", "Tset", "s", 0.0, 0.0, 10000.0, kNoNullValue, "time beyond Ifdset to a trip (no effect)"},
-      {"Ifcont", "Ifcont", "pu", 2.6, 0.5, 20.0, kNoNullValue, "permissible continuous value",
+      {"Tmax", "Tmax", "s", 0.0, 0.0, 1000.0, kNoNullValue, "time above Ifdmax to trip (read, not modelled)"},
+      {"Tset", "Tset", "s", 0.0, 0.0, 10000.0, kNoNullValue, "time above Ifdset to trip (read, not modelled)"},
+      {"Ifcont", "Ifcont", "pu", 2.6, 0.5, 20.0, kNoNullValue, "continuous limit",
        literature::own("rated field current of MAXEX2")},
       {"Vfdflag", "Vfdflag", "code", 0.0, 0.0, 1.0, kNoNullValue,
        "limited quantity: 0 field current, 1 field voltage",
-       literature::own("the field current heats the field"), shared::kCode},
+       literature::own("field current determines field-winding heating"), shared::kCode},
       {"Alarm", "Alarm", "code", 0.0, 0.0, 1.0, 1.0, "1: a message only, no action", shared::kNothing,
        shared::kCode}};
   static constexpr int dyr_columns[] = {Ifdset, Ifdmax, Tpickup, Runback, Tmax, Tset, Ifcont, Vfdflag, Alarm};
   enum C { pickup, lasting, inverse_rate, definite_rate, ramp, bias, voltage, zero, top, coefficients };
   enum X { timer, Voel };
-  static constexpr State states[] = {{"timer", "-", "progress of the timer (1: operated)", 1.0, zero, top},
+  static constexpr State states[] = {{"timer", "-", "progress of the timer (1: timed out)", 1.0, zero, top},
                                      {"Voel", "pu", "output"}};
   static constexpr double kOperatedReset =
-      -20.0;  ///< reset rate of the timer below the permanent limit [1/s]
+      -20.0;  ///< reset rate of the timer below the continuous limit [1/s]
 
   static void check(const double* p, const std::string& where, Problems& problems);
   static std::string_view unphysical(const double*) { return {}; }
@@ -104,7 +104,7 @@ struct Model {
                            select(lasts, none, c[ramp]));
     dx[Voel] = select(operated, moved, none);
   }
-  /// Guards: the timer's expiry, the pickup before it, and the permanent limit at any time.
+  /// Guards: the timer's expiry, the pickup before it, and the continuous limit at any time.
   static constexpr int guards = 3;
   template <class T>
   static void guard(const T* c, const T* x, const Signals<T>& s, T* g) {
@@ -120,7 +120,8 @@ struct Model {
     const double now = value_of(of_voltage ? s.Efd : s.Ifd), most = value_of(p[Ifdset]);
     if (now <= most) return {};
     return fmt::format(
-        "{} = {:.4f} pu is above the pickup Ifdset = {:.4f} pu: OEL1's timer would run from the start",
+        "at the operating point {} = {:.4f} pu exceeds the pickup Ifdset = {:.4f} pu; the OEL1 timer would start "
+        "at t = 0, so no steady state exists",
         of_voltage ? "Efd" : "Ifd", now, most);
   }
 };
@@ -131,10 +132,11 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   };
   const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
   const std::string order =
-      "; the order is that of PSLF's .dyd: Ifdset, Ifdmax, Tpickup, Runback, Tmax, "
+      "; parameter order of the PSLF .dyd: Ifdset, Ifdmax, Tpickup, Runback, Tmax, "
       "Tset, Ifcont, Vfdflag, Alarm";
   bad(!(p[Ifcont] > 0 && p[Ifcont] <= p[Ifdset]), says(Ifcont) + " pu with " + says(Ifdset) + " pu",
-      "the runback leads from the pickup to the continuous value", "give 0 < Ifcont <= Ifdset" + order);
+      "the continuous limit Ifcont must be positive and not above the pickup Ifdset", 
+      "give 0 < Ifcont <= Ifdset" + order);
   bad(p[Tpickup] == 0.0, says(Tpickup) + " s", "its sign selects inverse or definite time",
       "give Tpickup > 0 or < 0" + order);
   for (int i : {Vfdflag, Alarm}) bad(p[i] != 0.0 && p[i] != 1.0, says(i), "a code", "give 0 or 1" + order);
@@ -145,11 +147,11 @@ inline std::string Model::remark(const double* p) {
   std::string text = p[Runback] == 0.0
                          ? fmt::format(
                                "the hard limit at Ifcont = {:g} pu, its only action for Runback = 0, "
-                               "is left out",
+                               "is not modelled",
                                p[Ifcont])
-                         : fmt::format("the hard limit at Ifdmax = {:g} pu is left out", p[Ifdmax]);
+                         : fmt::format("the hard limit at Ifdmax = {:g} pu is not modelled", p[Ifdmax]);
   if (p[Tmax] > 0.0 || p[Tset] > 0.0)
-    text += fmt::format(", and so are the trips after Tmax = {:g} s and Tset = {:g} s", p[Tmax], p[Tset]);
+    text += fmt::format(", nor are the trips after Tmax = {:g} s and Tset = {:g} s", p[Tmax], p[Tset]);
   return text;
 }
 

@@ -26,9 +26,9 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"KT", "K/T", "pu", 10.0, -1000.0, 1000.0, 0.0, "gain above the washout's corner"},
       {"TW", "T", "s", 5.0, 0.01, 50.0, kNoNullValue, "washout"},
-      {"T1_T3", "T1/T3", "-", 5.0, 0.0, 100.0, 1.0, "first lead over lag"},
+      {"T1_T3", "T1/T3", "-", 5.0, 0.0, 100.0, 1.0, "ratio of the first lead to lag time constant"},
       {"T3", "T3", "s", 0.05, 0.0, 20.0, kNoNullValue, "first lag (0: bypass)"},
-      {"T2_T4", "T2/T4", "-", 4.0, 0.0, 100.0, 1.0, "second lead over lag"},
+      {"T2_T4", "T2/T4", "-", 4.0, 0.0, 100.0, 1.0, "ratio of the second lead to lag time constant"},
       {"T4", "T4", "s", 0.04, 0.0, 20.0, kNoNullValue, "second lag (0: bypass)"},
       upper_limit({"HLIM", "HLIM", "pu", 0.1, 0.0, 10.0, kNoNullValue, "limit of |Vs|"})};
   static constexpr int dyr_columns[] = {KT, TW, T1_T3, T3, T2_T4, T4, HLIM};

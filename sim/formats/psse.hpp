@@ -52,7 +52,7 @@ struct RawOptions {
 /// - remote regulation (IREG, RMPCT).
 ///
 /// Changed, with a remark:
-/// - branches without impedance get one (raise_impedance);
+/// - zero-impedance branches are given an impedance (raise_impedance);
 /// - dc lines, FACTS and GNE devices and induction machines become their power at the file's voltages;
 /// - VMSTAR <= 0 becomes 1; SBASE1-2 <= 0 becomes SBASE if CZ = 1;
 /// - IREG and SWREG of a missing bus become the own bus;

@@ -10,8 +10,8 @@
 
 namespace swingbank::sim::grid {
 
-/// Replaces V, theta, P and Q of every plant in the run by their measured values: the plant's own measurement
-/// effects act first, then `chain`. The run must have these four channels. Returns the measured frequency
+/// Replaces V, theta, P and Q of every plant in the run by the outputs of the simulated instruments:
+/// the plant's own measurement effects act first, then `chain`. The run must have these four channels. Returns the measured frequency
 /// [Hz] as [plant][sample]. Each plant has its own random-number stream. Throws InputError as phasors_of
 /// does.
 std::vector<std::vector<double>> measure_run(const Grid& grid, std::span<const plant::Block> chain,

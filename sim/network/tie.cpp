@@ -8,7 +8,7 @@ void raise_impedance(Network& network, double& r, double& x, const std::string& 
   if (!(std::abs(Complex(r, x)) <= kLeastImpedance) || (r == 0.0 && x == kLeastImpedance)) return;
   r = 0.0;
   x = kLeastImpedance;
-  network.remark("branches without impedance (up to 1e-06 pu) get X = 1e-06 pu", place);
+  network.remark("zero-impedance branches (|Z| <= 1e-6 pu) are given X = 1e-6 pu", place);
 }
 
 bool is_tie(const Branch& branch) { return std::abs(Complex(branch.r, branch.x)) <= kTieImpedance; }

@@ -126,8 +126,8 @@ struct InverseTime {
     const double most = value_of(p[efd1]) * value_of(p[rated]);
     if (now <= most) return {};
     return fmt::format(
-        "{} = {:.4f} pu is above the pickup EFD1 EFDRATED = {:.4f} pu: {}'s timer would run from the "
-        "start",
+        "at the operating point {} = {:.4f} pu exceeds the pickup EFD1 EFDRATED = {:.4f} pu; the {} timer would "
+        "start at t = 0, so no steady state exists",
         limited, now, most, model);
   }
 };

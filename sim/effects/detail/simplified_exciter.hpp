@@ -17,7 +17,7 @@ struct SimplifiedExciter {
   enum X { leadlag, output };
   static constexpr Source bounds_from = kBeyondCases;
   static constexpr Parameter kTAoverTB = {"TAoverTB", "TA/TB", "-", 0.1,
-                                          0.0,        10.0,    1.0, "lead over lag time constant"},
+                                          0.0,        10.0,    1.0, "ratio of lead to lag time constant"},
                              kTB = {"TB", "TB",  "s",          10.0,
                                     0.0,  100.0, kNoNullValue, "lag time constant (0: none)"},
                              kK = {"K", "K", "pu", 100.0, 0.5, 2000.0, kNoNullValue, "gain"},

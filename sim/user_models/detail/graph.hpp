@@ -1,6 +1,7 @@
 #pragma once
 // Expression graph of a user-defined model, with common subexpressions eliminated. Values that depend only on
-// parameters and on the operating point are marked: they are evaluated once per run, not once per step.
+// constants, parameters and given operating-point values are marked: they are evaluated once per run, not once
+// per step.
 #include <array>
 #include <map>
 #include <string>
@@ -12,28 +13,29 @@
 
 namespace swingbank::sim::user_models {
 
-/// A signal that a user-defined model may read; `name` is the field of Signals.
+/// A signal that a user-defined model may read; `name` is the field of Signals. Per unit on the machine's own
+/// base, its rated voltage included.
 struct SignalRecord {
   std::string_view name, meaning;
-  Slot made_in;  ///< slot that computes it; readable in later slots only (machine: in all)
+  Slot made_in;  ///< slot that computes the signal; only later slots may read it (machine signals: every slot)
 };
 inline constexpr std::array kSignals = {
-    SignalRecord{"Vr", "terminal voltage, real part [pu]", Slot::machine},
-    SignalRecord{"Vi", "terminal voltage, imaginary part [pu]", Slot::machine},
+    SignalRecord{"Vr", "terminal voltage, real part in the synchronous frame [pu]", Slot::machine},
+    SignalRecord{"Vi", "terminal voltage, imaginary part in that frame [pu]", Slot::machine},
     SignalRecord{"V", "terminal voltage magnitude [pu]", Slot::machine},
-    SignalRecord{"Ir", "current, real part [pu]", Slot::machine},
-    SignalRecord{"Ii", "current, imaginary part [pu]", Slot::machine},
+    SignalRecord{"Ir", "current out of the machine, real part in that frame [pu]", Slot::machine},
+    SignalRecord{"Ii", "current out of the machine, imaginary part in that frame [pu]", Slot::machine},
     SignalRecord{"P", "active power [pu]", Slot::machine},
     SignalRecord{"Q", "reactive power [pu]", Slot::machine},
     SignalRecord{"speed", "speed deviation [pu]", Slot::machine},
     SignalRecord{"Te", "electrical torque [pu]", Slot::machine},
     SignalRecord{"Ifd", "field current [pu]", Slot::machine},
     SignalRecord{"t", "time [s]", Slot::machine},
-    SignalRecord{"Vc", "voltage the exciter regulates [pu]", Slot::compensator},
-    SignalRecord{"dVref", "move of the exciter's reference [pu]", Slot::setpoint},
-    SignalRecord{"dPref", "move of the governor's reference [pu]", Slot::setpoint},
+    SignalRecord{"Vc", "compensated voltage V_C (IEEE 421.5) [pu]", Slot::compensator},
+    SignalRecord{"dVref", "change of the voltage reference, dVref [pu]", Slot::setpoint},
+    SignalRecord{"dPref", "change of the governor's power reference, dPref [pu]", Slot::setpoint},
     SignalRecord{"Vs", "stabiliser output [pu]", Slot::stabiliser},
-    SignalRecord{"Vlimiter", "sum of the limiters [pu]", Slot::limiter},
+    SignalRecord{"Vlimiter", "sum of limiter outputs [pu]", Slot::limiter},
     SignalRecord{"Efd", "field voltage [pu]", Slot::exciter},
     SignalRecord{"Tm", "mechanical torque or power [pu]", Slot::governor}};
 template <class T>
@@ -47,7 +49,7 @@ int signal_index(std::string_view name);
 
 /// Operation of a vertex on the values of its operands.
 enum class Act : std::uint8_t {
-  coefficient,  ///< c[index]: constant of the file, parameter, value at the operating point
+  coefficient,  ///< c[index]: literal constant, parameter, or value evaluated at the operating point
   state,        ///< x[index]
   signal,       ///< s.*kMembers[index]
   add,
@@ -66,14 +68,16 @@ enum class Act : std::uint8_t {
   inverse,
   select_less,        ///< a < b ? c : d
   select_less_equal,  ///< a <= b ? c : d
-  store               ///< in programs only: writes a value
+  store               ///< only in compiled programs (program.hpp): stores a value
 };
 /// A vertex of the graph: an operation and its operands.
 struct Vertex {
   Act act;
   int index = -1;  ///< coefficient, state, signal
   std::array<int, 4> from = {-1, -1, -1, -1};
-  bool fixed = false;       ///< depends on coefficients only
+  /// Depends only on constants, parameters and given operating-point values, not on coefficients solved by
+  /// steady().
+  bool fixed = false;
   bool parameters = false;  ///< fixed, and independent of the operating point
 };
 

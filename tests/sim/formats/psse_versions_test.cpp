@@ -189,7 +189,7 @@ TEST(PsseSwitch, GetsTheLeastImpedance_WithoutReactance) {
   const network::Network n = parse_raw(t, "case.raw");
   EXPECT_EQ(n.branches[2].x, network::kLeastImpedance);
   const auto said = std::ranges::find_if(n.remarks, [](const network::Remark& r) {
-    return r.what.find("branches without impedance") != std::string::npos;
+    return r.what.find("zero-impedance branches") != std::string::npos;
   });
   ASSERT_NE(said, n.remarks.end());
   EXPECT_THAT(
