@@ -28,7 +28,7 @@ bool is_single(const KeyPath& path) {
   return std::ranges::none_of(path, [](const auto& name) { return name == kAnyName || name == "[]"; });
 }
 
-/// Returns the schema `inner` of the table of `path` as a schema of the table above all.
+/// Returns the schema `inner` of the table of `path` as a schema of the root table.
 Json nested(const KeyPath& path, Json inner, bool present) {
   for (std::size_t k = path.size() - 1; k-- > 0;) {
     if (path[k] == kAnyName) {
@@ -52,7 +52,7 @@ Json negated(const Json& schema) { return schema.contains("not") ? schema["not"]
 
 Json all_of(const Json& schemas) { return schemas.size() == 1 ? schemas.front() : Json{{"allOf", schemas}}; }
 
-/// Returns the condition that the decision has one of the outcomes; `path` is its key seen from the table.
+/// Returns the condition that the decision has one of the outcomes; `path` is its key relative to the table.
 Json has_outcome(const KeyDecision& decision, const KeyPath& path, const std::vector<std::size_t>& outcomes) {
   if (decision.values.empty())
     return outcomes.front() == 0 ? with_key(path, true) : negated(with_key(path, true));
@@ -71,14 +71,14 @@ struct Decided {
   std::size_t outcome;
 };
 
-/// Consequence of a decision: keys that are required, and that are unknown, where it has some of its
-/// outcomes.
+/// Keys that become required, and keys that become invalid, for a given set of a decision's outcomes.
 struct Consequence {
   Paths required, unknown;
   std::vector<std::size_t> outcomes;
 };
 
-/// Explorer of a reader: every decision with every outcome, each in the first context in which it is met.
+/// Runs the config-reading function for every outcome of every decision (a key whose value changes which keys
+/// are read), in the first context that reaches it.
 class Explorer {
  public:
   explicit Explorer(const std::function<void(Config&)>& read) : read_(read) {}
@@ -170,7 +170,7 @@ class Explorer {
     }
   }
 
-  /// Returns the consequences of a decision's outcomes; outcomes with the same consequences are together.
+  /// Returns the consequences of a decision's outcomes; outcomes with the same consequences are grouped.
   static std::vector<Consequence> consequences(const Group& group) {
     std::vector<Paths> required, asked;
     Paths any_asked;
@@ -180,7 +180,7 @@ class Explorer {
       asked.push_back(tree.asked());
       any_asked.insert(asked.back().begin(), asked.back().end());
     }
-    // A key of a table that is not read with an outcome is not missing there.
+    // If an outcome does not read a table, its keys are not counted as missing.
     const auto always = [&](const KeyPath& path) {
       const KeyPath table = table_of(path);
       for (std::size_t k = 0; k < required.size(); ++k)
@@ -205,8 +205,8 @@ class Explorer {
     return all;
   }
 
-  /// Returns whether a key may depend on a decision: it is not below the decision's own key, and in no branch
-  /// of another table.
+  /// Returns whether a key may depend on a decision: it is not below the decision's own key, and not in
+  /// another branch of an alternative.
   static bool depends(const KeyPath& path, const KeyPath& decision) {
     if (begins_with(path, decision) || !is_single({path.back()}) || path.back().starts_with('='))
       return false;
@@ -215,14 +215,14 @@ class Explorer {
     return true;
   }
 
-  /// Returns whether a table of the key is itself unknown.
+  /// Returns whether any parent table of the key is itself unknown.
   static bool is_unknown(const Paths& unknown, const KeyPath& path) {
     for (KeyPath table = table_of(path); !table.empty(); table.pop_back())
       if (unknown.contains(table)) return true;
     return false;
   }
 
-  /// Adds that words and names other than the known ones need the key that opens their table.
+  /// Adds the condition: an unlisted enum value or name requires the key `opened_by`.
   void open_tables() {
     std::map<KeyPath, KeyTrace::Table> tables;
     for (const auto& pass : passes_)

@@ -83,8 +83,8 @@ bool RunLock::try_lock() {
   withdraw();
   throw InputError(
       {"cannot lock the folder", file_.string(),
-       "this file system does not lock files: " + why + "; two runs could write here at once",
-       "choose a folder on another disk, or have this one mounted with locks (Lustre: -o flock)"});
+       "the file system does not support flock: " + why + "; two runs could write to the folder at the same time",
+       "use another disk or mount with lock support (Lustre: -o flock)"});
 }
 
 /// Returns whether the locked file still has this name. Another holder may have removed it between open and
@@ -97,12 +97,12 @@ bool RunLock::is_the_one_of_that_name() const {
 }
 
 void RunLock::refuse() const {
-  throw InputError({words_.what, words_.where, owner_in(fd_) + " holds it", words_.remedy});
+  throw InputError({words_.what, words_.where, "locked by " + owner_in(fd_), words_.remedy});
 }
 
 /// Writes the holder into the file. Ignores errors such as a full disk, because the text is only informative.
 void RunLock::write_owner() const {
-  const std::string owner = this_process() + (kind_ == Kind::shared ? " or another part" : "") + "\n";
+  const std::string owner = this_process() + (kind_ == Kind::shared ? " or another part of the dataset" : "") + "\n";
   if (::ftruncate(fd_, 0) == 0 && ::pwrite(fd_, owner.data(), owner.size(), 0) < 0) return;
 }
 

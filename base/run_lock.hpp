@@ -7,8 +7,8 @@
 
 namespace swingbank {
 
-/// Parts of the error message for a lock held by another process: "<what> at <where> (process 12 on host a
-/// holds it): <remedy>".
+/// Parts of the error message for a lock held by another process: "<what> at <where> (locked by process 12
+/// on host a): <remedy>".
 struct LockWords {
   std::string what, where, remedy;  ///< the message without its reason
 };

@@ -26,7 +26,7 @@ struct Hash {
   [[nodiscard]] std::uint64_t value() const { return XXH3_64bits_digest(state.get()); }
 };
 
-/// Buffered reader of a file. A disk error throws InputError; a file that is too short throws Unusable.
+/// Buffered reader of a file. A disk error throws InputError. Throws Unusable if the file is truncated.
 class Input {
  public:
   explicit Input(const std::filesystem::path& file) : file_(file), buffer_(std::size_t{1} << 16) {
@@ -61,7 +61,7 @@ class Input {
   void fill() {
     const ssize_t n = until_done([&] { return ::read(fd_, buffer_.data(), buffer_.size()); });
     if (n < 0) raise_file_error(file_, errno, "cannot read the file");
-    if (n == 0) throw Unusable{"it ends too early"};
+    if (n == 0) throw Unusable{"the file is truncated"};
     at_ = 0, filled_ = static_cast<std::size_t>(n);
   }
   const std::filesystem::path& file_;
@@ -73,13 +73,13 @@ class Input {
 /// Verifies magic bytes and checksum before the content is used. Throws Unusable if they are wrong.
 void require_seal(Input& in, std::uint64_t length, const SealedKind& kind) {
   std::string magic(std::strlen(kind.magic), '\0');
-  if (length < magic.size()) throw Unusable{"it ends too early"};
+  if (length < magic.size()) throw Unusable{"the file is truncated"};
   in.get(magic.data(), magic.size());
-  if (magic != kind.magic) throw Unusable{"it is no " + std::string(kind.what)};
+  if (magic != kind.magic) throw Unusable{"it is not a " + std::string(kind.what) + " (wrong file signature)"};
   in.rewind();
   Hash hash;
   std::uint64_t seal = 0;
-  if (length < magic.size() + sizeof seal) throw Unusable{"it ends too early"};
+  if (length < magic.size() + sizeof seal) throw Unusable{"the file is truncated"};
   std::vector<char> piece(std::size_t{1} << 16);
   for (std::uint64_t left = length - sizeof seal; left > 0;) {
     const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(left, piece.size()));
@@ -109,11 +109,11 @@ void read_all(Input& in, std::uint64_t length, const SealedKind& kind,
   const json header = json::parse(text, nullptr, false);
   if (!header.is_object()) throw Unusable{"its header is damaged"};
   const std::uint64_t arrays = get_size();
-  if (arrays > length / sizeof(std::uint64_t)) throw Unusable{"it ends too early"};
+  if (arrays > length / sizeof(std::uint64_t)) throw Unusable{"the file is truncated"};
   start(header, arrays);
   for (std::size_t i = 0; i < arrays; ++i) {
     const std::uint64_t size = get_size();
-    if (size > length / sizeof(float)) throw Unusable{"it ends too early"};
+    if (size > length / sizeof(float)) throw Unusable{"the file is truncated"};
     const std::span<float> to = place(i, size);
     in.get(to.data(), to.size_bytes());
   }

@@ -1,4 +1,4 @@
-// swingbank databank: draws the points of a dataset's databank, writes them, and prints the shares of
+// swingbank databank: draws the parameter sets of a dataset's databank, writes them, and prints the shares of
 // rejected candidates by reason.
 #include "mpi/draw/databank.hpp"
 
@@ -30,13 +30,13 @@ void write_csv(const fs::path& file, const mpi::draw::Databank& bank, const mpi:
 
 void report(const mpi::draw::Databank& bank, double seconds) {
   const auto share = [&](std::uint64_t n) {
-    return 100.0 * static_cast<double>(n) / static_cast<double>(bank.draws);
+    return 100.0 * static_cast<double>(n) / static_cast<double>(bank.candidates);
   };
-  fmt::print("{} points from {} draws in {:.2f} s: {:.1f} % accepted\n", bank.points(), bank.draws, seconds,
+  fmt::print("{} databank samples from {} candidates in {:.2f} s: {:.1f} % accepted\n", bank.points(), bank.candidates, seconds,
              share(bank.points()));
   for (const auto& [why, count] : bank.refused)
-    fmt::print("  {:<28}{:>10} draws  {:5.1f} %\n", why, count, share(count));
-  fmt::print("  {:<28}{:>10} draws  {:5.1f} %\n", "too close to another point", bank.too_close,
+    fmt::print("  {:<28}{:>10} candidates  {:5.1f} %\n", why, count, share(count));
+  fmt::print("  {:<28}{:>10} candidates  {:5.1f} %\n", "closer than the minimum", bank.too_close,
              share(bank.too_close));
 }
 
@@ -55,7 +55,7 @@ int run(const std::string& config_file, const mpi::draw::Overrides& overrides, s
   const mpi::draw::Databank bank =
       mpi::draw::draw_databank(config, base, points > 0 ? points : config.points());
   if (bank.points() < (points > 0 ? points : config.points())) {
-    fmt::print(stderr, "stopped on a signal after {} points: nothing was written; run the command again\n",
+    fmt::print(stderr, "stopped on a signal after {} databank samples: nothing was written; run the command again\n",
                bank.points());
     return kSubmitAgain;
   }
@@ -69,17 +69,17 @@ int run(const std::string& config_file, const mpi::draw::Overrides& overrides, s
 
 int run(CommandLine& line, int argc, char** argv) {
   line.describe(
-      "Draws the databank of a dataset: parameters that keep a distance from one another.\n"
+      "Draws the databank of a dataset: parameter sets with a minimum mutual distance.\n"
       "  swingbank databank configs/datasets/ieee39_genrou.toml --points 60000 --out bank.h5");
   std::string config, out;
   mpi::draw::Overrides overrides;
   std::uint64_t points = 0;
   line.add("config", config, "the dataset's config (TOML)").required();
   line.add("--draws", overrides.draws,
-           "as many points as this number of simulated events needs, instead of the config's")
+           "number of events to simulate; determines the number of databank samples; overrides the config")
       .positive();
-  line.add("--points", points, "number of points, instead of what the config's draws need").positive();
-  line.add("--seed", overrides.seed, "seed, instead of the config's").not_negative();
+  line.add("--points", points, "number of databank samples; overrides the number that the config's draws determine").positive();
+  line.add("--seed", overrides.seed, "seed; overrides the config").not_negative();
   line.add("--out", out, "file to write: .csv or .h5");
   if (!line.parse(argc, argv)) return line.end();
   return run(config, overrides, points, out);

@@ -37,11 +37,11 @@ std::string reasons(const Databank& bank) {
   return text;
 }
 
-/// Candidate point with its tests that do not depend on other candidates of the batch.
+/// Candidate sample with its tests that do not depend on other candidates of the batch.
 struct Candidate {
   std::vector<double> x, measured;  ///< in the parameters' units, and in the units of the distance
   std::string why;                  ///< reason why it is inadmissible; empty if admissible
-  bool near = false;                ///< whether it is too close to a point of an earlier batch
+  bool near = false;                ///< whether it is too close to a sample of an earlier batch
 };
 
 /// Draws candidate `number`, a pure function of (seed, number), and tests its parameters.
@@ -120,7 +120,7 @@ class Drawer {
     try {
       bank_.values.reserve(points_ * bank_.dimensions);
     } catch (const std::exception&) {  // bad_alloc, length_error
-      throw InputError({fmt::format("no memory for a databank of {} points", points_), config_.file.string(),
+      throw InputError({fmt::format("no memory for a databank of {} samples", points_), config_.file.string(),
                         fmt::format("they take {:.1f} GB", bytes * 1e-9),
                         "ask for fewer draws, or for more faults per point"});
     }
@@ -133,7 +133,7 @@ class Drawer {
           auto& plant = plants_[static_cast<std::size_t>(omp_get_thread_num())];
           for (std::size_t k = piece * kPiece; k < (piece + 1) * kPiece; ++k) {
             Candidate& c = batch_[k];
-            draw_one(config_, bank_.draws + k, plant, c);
+            draw_one(config_, bank_.candidates + k, plant, c);
             c.near = c.why.empty() && config_.databank.distance > 0 && settled_.near(c.measured.data());
           }
         },
@@ -141,11 +141,11 @@ class Drawer {
   }
   /// Accepts candidates in order, so that the points equal those of sequential drawing.
   void settle_batch() {
-    const std::uint64_t first = bank_.draws;
+    const std::uint64_t first = bank_.candidates;
     std::vector<const Candidate*> accepted;
     for (const Candidate& c : batch_) {
       if (bank_.points() == points_) break;
-      bank_.draws = first + static_cast<std::uint64_t>(&c - batch_.data()) + 1;
+      bank_.candidates = first + static_cast<std::uint64_t>(&c - batch_.data()) + 1;
       if (!c.why.empty()) {
         ++bank_.refused[c.why];
         continue;
@@ -168,15 +168,16 @@ class Drawer {
     const auto reached = static_cast<double>(bank_.points()), admissible = static_cast<double>(admissible_);
     const auto needed = forecast_.draws(reached, admissible);
     const bool hopeless = needed && forecast_.hopeless(*needed);
-    // Also ends if the policy admits almost no draw.
-    if (!hopeless && admissible <= patience_ && static_cast<double>(bank_.draws) <= 1000.0 * patience_)
+    // Also ends if the policy admits almost no candidate.
+    if (!hopeless && admissible <= patience_ && static_cast<double>(bank_.candidates) <= 1000.0 * patience_)
       return;
-    std::string why = fmt::format("{} draws: {}", bank_.draws, reasons(bank_));
+    std::string why = fmt::format("{} candidates: {}", bank_.candidates, reasons(bank_));
     if (hopeless)
       why += fmt::format(
-          "; by these, all points would need {:.1e} admissible draws or more, and {:.1e} are allowed",
+          "; at this acceptance rate all samples would need at least {:.1e} admissible candidates, and {:.1e} are "
+          "allowed",
           *needed, patience_);
-    throw InputError({fmt::format("databank reached {} of {} points", bank_.points(), points_),
+    throw InputError({fmt::format("databank reached {} of {} samples", bank_.points(), points_),
                       config_.file.string(), why,
                       "ask for fewer draws, a smaller databank.distance or another databank.scale, or raise "
                       "databank.candidates_per_point"});
@@ -184,7 +185,7 @@ class Drawer {
 
   const DatasetConfig& config_;
   std::uint64_t points_, admissible_ = 0;
-  double patience_;  ///< largest number of admissible draws
+  double patience_;  ///< largest number of admissible candidates
   Forecast forecast_;
   Databank bank_;
   Neighbours settled_, newest_;  ///< points of earlier batches, and of this one

@@ -1,5 +1,5 @@
 #pragma once
-// Databank file: drawn once, and read by all programs that simulate its points (docs/reference/formats.md).
+// Databank file: drawn once, and read by all programs that simulate its samples (docs/reference/formats.md).
 #include <filesystem>
 
 #include "mpi/draw/databank.hpp"
@@ -13,8 +13,8 @@ std::string values_hash(const Databank& bank);
 void write_databank(const std::filesystem::path& file, const Databank& bank, const DatasetConfig& config,
                     const sim::plant::Plant& base);
 
-/// Returns the first `points` points of a file. Throws InputError if the file was drawn for another config,
-/// has too few points, or its checksum is wrong.
+/// Returns the first `points` samples of a file. Throws InputError if the file was drawn for another config,
+/// has too few samples, or its checksum is wrong.
 Databank read_databank(const std::filesystem::path& file, const DatasetConfig& config,
                        const sim::plant::Plant& base, std::uint64_t points);
 

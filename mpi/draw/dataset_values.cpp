@@ -1,4 +1,4 @@
-// Values that follow from a dataset's config, and its canonical text.
+// Derived quantities (samples, bytes, points) of a dataset config and its canonical text for hashing.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -54,7 +54,7 @@ std::uint64_t DatasetConfig::points() const {
 
 namespace {
 /// Returns an attachment as "30:SEXS:TAoverTB=0.1,TB=10,…" with every parameter, so that a changed default
-/// value changes the hash.
+/// changes the hash.
 std::string written(const sim::plant::Attachment& a) {
   std::string text = a.plant + ":" + std::string(a.block.effect->name);
   for (std::size_t i = 0; i < a.block.p.size(); ++i)

@@ -133,7 +133,7 @@ TEST_F(OutputFolderTest, IsLockedByOneCommandAndLeavesNoLockFile) {
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(),
                   AllOf(HasSubstr("another command works in the output folder at --out new/out"),
-                        HasSubstr("process "), HasSubstr(" holds it")));
+                        HasSubstr("locked by process ")));
     }
   }
   EXPECT_FALSE(fs::exists("new/out"));

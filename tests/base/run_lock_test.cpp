@@ -64,7 +64,7 @@ TEST_F(RunLockFile, RefusalNamesTheHolder) {
   ::unsetenv("SLURM_JOB_ID");
   EXPECT_THAT(refusal(),
               AllOf(HasSubstr("dataset in use at /data (process " + std::to_string(::getpid()) + " on "),
-                    HasSubstr(", Slurm job 4711 holds it): wait for it")));
+                    HasSubstr(", Slurm job 4711): wait for it")));
 }
 
 TEST_F(RunLockFile, IsReleasedWithItsHolderAndTheFileRemains) {
@@ -77,7 +77,7 @@ TEST_F(RunLockFile, ReportsFileSystemsWithoutLocks) {
   for (const int error : {ENOSYS, ENOLCK, EOPNOTSUPP}) {
     lock_error = error;
     lock_errors_left = 1;
-    EXPECT_THAT(refusal(), AllOf(HasSubstr("this file system does not lock files"),
+    EXPECT_THAT(refusal(), AllOf(HasSubstr("the file system does not support flock"),
                                  HasSubstr(std::strerror(error)), Not(HasSubstr("in use"))));
     EXPECT_FALSE(std::filesystem::exists(file));
   }
@@ -110,7 +110,7 @@ TEST_F(RunLockFile, ReportsForeignTextWithoutControlCharacters) {
   write_text(file, "\x1b[31mred\nsecond line");
   const int held = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
   ASSERT_EQ(::flock(held, LOCK_EX | LOCK_NB), 0);
-  EXPECT_THAT(refusal(), HasSubstr("([31mredsecond line holds it)"));
+  EXPECT_THAT(refusal(), HasSubstr("(locked by [31mredsecond line)"));
   ::close(held);
 }
 

@@ -1,4 +1,4 @@
-// Checkpoints and saved networks: bytes after the magic number of a sealed file, with a valid checksum ->
+// Checkpoints and saved networks: bytes after the magic number of a checksummed file, with a valid checksum ->
 // header and arrays.
 #include <xxhash.h>
 

@@ -32,3 +32,5 @@ diff -r "$work/whole/shards" "$work/trusted/shards" || fail "other bytes after a
 "${make[@]}" --seed 2 --part 1/3 --out "$work/other" >/dev/null 2>&1 || true
 expect 1 "a dataset of another config at $work/other" "$merge" "$work/part1" "$work/other" --out "$work/new" --progress none
 [ ! -e "$work/new" ] || fail "a refused merge left a folder"
+expect 1 "no dataset at $work/absent (the folder does not exist): give a folder" "$merge" "$work/part1" "$work/absent" --out "$work/new"
+[ ! -e "$work/new" ] || fail "a merge of a missing folder left an output folder"

@@ -12,7 +12,7 @@ mkdir "$work/held"
   echo "process 12 on elsewhere" >&9
   flock 9
   "${make[@]}" --repair --out "$work/held" >"$work/repair" 2>&1 9>&- &
-  expect 1 "dataset in use at $work/held (process 12 on elsewhere holds it)" "${make[@]}" --out "$work/held"
+  expect 1 "dataset in use at $work/held (locked by process 12 on elsewhere)" "${make[@]}" --out "$work/held"
   wait $! && fail "a repair went on in a locked folder"
   grep -q "dataset in use" "$work/repair" || fail "a repair was not told: $(cat "$work/repair")"
 )
@@ -27,7 +27,7 @@ first=$!
 second=0
 "${make[@]}" --repair --out "$work/repaired" >"$work/second" 2>&1 || second=$?
 wait $first || second=1$second # either may be first
-[ "$second" = 0 ] || grep -q "holds it" "$work/first" "$work/second" || { cat "$work/first" "$work/second"; fail "beside a repair: $second"; }
+[ "$second" = 0 ] || grep -q "locked by" "$work/first" "$work/second" || { cat "$work/first" "$work/second"; fail "beside a repair: $second"; }
 [ "$(hash_of "$work/repaired")" = "$whole" ] || fail "beside a repair: another hash"
 [ "$(lines "$work/repaired")" = 50 ] || fail "beside a repair: $(lines "$work/repaired") lines for 50 shards"
 

@@ -1,6 +1,6 @@
 #pragma once
 // A trained network with everything that an estimate needs: input and its normalisation, weights, and errors
-// on its test rows. One sealed file beside the result's JSON.
+// on its test rows. One checksummed file beside the result's JSON.
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>

@@ -39,7 +39,7 @@ class Claim {
   Claim(const fs::path& folder, const store::Part& part) {
     if (part.all()) return;
     lock_ = std::make_unique<RunLock>(
-        folder / kClaimFile, LockWords{"dataset being looked at", folder.string(), "run the command again"},
+        folder / kClaimFile, LockWords{"dataset in use", folder.string(), "run the command again"},
         std::chrono::minutes(2));
   }
   ~Claim() {

@@ -75,7 +75,7 @@ TEST(DatabankDraw, PointsArePhysicalAndInTheBox) {
     EXPECT_EQ(c.effect().unphysical(full.data()), "");
   }
   EXPECT_EQ(
-      b.draws, 2000 + b.too_close + [&] {
+      b.candidates, 2000 + b.too_close + [&] {
         std::uint64_t n = 0;
         for (const auto& r : b.refused) n += r.second;
         return n;

@@ -1,5 +1,5 @@
 #pragma once
-// Checkpoint of a training run as a sealed file.
+// Checkpoint of a training run as a checksummed file.
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
