@@ -241,7 +241,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   std::vector<fit::FittedParameter> fitted;
   for (const auto& p : c.parameters) fitted.push_back(p.fit);
   std::vector<std::string> notes;
-  for (const auto& blur : c.blurs) notes.push_back(calibrate::describe(c, blur));
+  for (const auto& combination : c.unidentified) notes.push_back(calibrate::describe(c, combination));
   return write(a, model, set, played,
                {.model = c.model,
                 .adequate = adequate,

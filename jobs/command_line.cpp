@@ -95,6 +95,15 @@ struct CommandLine::Parser {
     }
     return all;
   }
+  /// Returns "no positional arguments", or "no positional arguments except …".
+  [[nodiscard]] std::string positionals() const {
+    std::string text = "no positional arguments";
+    const std::size_t none = text.size();
+    for (const CLI::Option* option : app.get_options())
+      if (option->get_positional())
+        text += (text.size() == none ? " except " : ", ") + option->get_name(true);
+    return text;
+  }
   /// Returns an error for each argument that is neither an option nor a value of one, in the order given.
   /// Arguments after an unknown option count as its values.
   [[nodiscard]] std::vector<std::string> not_expected() const {
@@ -104,11 +113,15 @@ struct CommandLine::Parser {
       const bool option = word.starts_with('-') && word.size() > 1;
       if (!option && value) continue;
       value = value || option;
-      const std::string name = option ? word.substr(0, word.find('=')) : "";
-      const std::string nearest = option ? nearest_word(name, names()) : "";
+      if (!option) {
+        sentences.push_back(fmt::format("unexpected argument '{}': {} takes {}; see {} --help", word,
+                                        app.get_name(), positionals(), app.get_name()));
+        continue;
+      }
+      const std::string name = word.substr(0, word.find('='));
+      const std::string nearest = nearest_word(name, names());
       sentences.push_back(fmt::format(
-          "{} at '{}' ({} has none of that name): {}", option ? "unknown option" : "unexpected word",
-          option ? name : word, app.get_name(),
+          "unknown option at '{}' ({} has none of that name): {}", name, app.get_name(),
           nearest.empty() ? fmt::format("see {} --help", app.get_name()) : "did you mean " + nearest + "?"));
     }
     return sentences;
@@ -169,10 +182,10 @@ const Option& Option::excludes(Option other) const {
 CommandLine::CommandLine(const std::string& summary, const std::string& name)
     : parser_(new Parser{CLI::App(summary, name)}) {
   parser_->app.formatter(std::make_shared<GroupedHelp>());
-  parser_->app.set_help_flag("-h,--help", "print this help, and end")->group("Help");
+  parser_->app.set_help_flag("-h,--help", "print this help and exit")->group("Help");
   parser_->app
       .set_version_flag("--version", name + " " + version() + ", commit " + commit(),
-                        "print version and commit, and end")
+                        "print version and commit, and exit")
       ->group("Help");
 }
 CommandLine::~CommandLine() = default;
@@ -237,7 +250,8 @@ int CommandLine::end() const {
   const auto wrong = parser_->not_expected();
   if (parser_->ended->get_exit_code() == 0 || wrong.empty()) return exit_code(parser_->app, *parser_->ended);
   for (const auto& sentence : wrong) fmt::print(stderr, "{}\n", sentence);
-  fmt::print(stderr, "Run with --help for more information.\n");
+  if (std::ranges::none_of(wrong, [](const auto& s) { return s.ends_with("--help"); }))
+    fmt::print(stderr, "Run with --help for more information.\n");
   return 1;
 }
 int CommandLine::lacks(const std::string& what) const {

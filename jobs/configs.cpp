@@ -1,4 +1,4 @@
-// swingbank configs: prints the folder of the example configs.
+// swingbank configs: prints the path of the example configs.
 #include <fmt/format.h>
 
 #include "base/input_file.hpp"
@@ -7,12 +7,12 @@
 namespace swingbank::jobs::configs_command {
 int run(CommandLine& line, int argc, char** argv) {
   line.example("cp -r \"$(swingbank configs)\" .");
-  line.footer("Paths inside a config refer to the folder of that config.");
+  line.footer("Relative paths in a config file are resolved against the folder of that file.");
   if (!line.parse(argc, argv)) return line.end();
   const auto folder = swingbank::example_configs();
   if (folder.empty()) {
     const swingbank::Problem problem{"no example configs", "share/swingbank/configs",
-                                     "the folder that is installed with this program is not there",
+                                     "the installed folder of example configs does not exist",
                                      "install Swingbank again"};
     fmt::print(stderr, "{}\n", problem.sentence());
     return 1;

@@ -154,7 +154,7 @@ void declare(jobs::CommandLine& line, Command& c) {
   line.group("Expert");
   line.add_flag("--thresholds", c.thresholds,
                 "print every number on which a verdict depends, with unit and reason (with --json as JSON), "
-                "and end")
+                "and exit")
       .excludes(of_one_plant.front())
       .excludes(fleet);
   line.example("swingbank diagnose --model plant.toml --records fault1.csv fault2.csv --out diagnosis");

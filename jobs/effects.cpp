@@ -24,7 +24,7 @@ std::string_view slot_meaning(Slot slot) {
   constexpr std::array<std::string_view, kSlots.size()> meanings = {
       "the source: a synchronous machine or a converter",
       "between the machine's terminal and the grid",
-      "Vc, the voltage that the exciter regulates",
+      "Vc, the compensated voltage that the exciter regulates",
       "references of exciter and governor",
       "mechanical torque",
       "torque after the governor",

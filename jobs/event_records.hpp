@@ -48,7 +48,7 @@ struct Reading {
             "which columns of the records are read: V=NAME,P=NAME (t, V, theta, f, P, Q, I, phi, speed, Efd, Ifd; of a component "
             "also Vs, Vref, Pm, Pref, gate); "
             "\"V=NAME [kV]\" where the file names no unit, V=#2 for the second column, P=-NAME reverses the sign; "
-            "beside [record.columns] of the plant file")
+            "in addition to [record.columns] of the plant file")
         .comma_separated();
   }
   Option add_from(CommandLine& line) {
@@ -60,7 +60,7 @@ struct Reading {
   /// Adds --point, the measured point that several units share.
   Option add_point(CommandLine& line) {
     return line.add("--point", point,
-                    "file of the measured point if several units or a collector are connected behind it: the "
+                    "file that describes the measuring point, if it serves several units or a collector system: the "
                     "simulated power of the other units is subtracted from the record "
                     "(configs/plants/README.md)");
   }
@@ -77,8 +77,8 @@ struct Reading {
     return line
         .add("--component", component,
              "part of the plant under test: plant, or one component with the recorded signals as its "
-             "inputs: exciter (V, and P, Q, speed, Ifd where its blocks ask for them, Vs and Vref "
-             "where recorded -> Efd), governor (speed or f, and Pref -> Pm, gate), machine (V, angle "
+             "inputs: exciter (V, and P, Q, speed, Ifd if its model uses them, Vs and Vref "
+             "if recorded -> Efd), governor (speed or f, and Pref -> Pm, gate), machine (V, angle "
              "or f, Efd, and Pm -> P, Q, Ifd, speed)")
         .shows_default()
         .one_of({"plant", "exciter", "governor", "machine"});
@@ -139,7 +139,7 @@ inline void note_unused_events(const std::vector<std::string>& files,
   for (const auto& e : staged)
     if (std::ranges::none_of(files, [&](const auto& file) { return e.applies_to(file); }))
       fmt::print(stderr,
-                 "note: the [[event]] {} of {} is left out (none of the records here has that name)\n",
+                 "note: the [[event]] {} of {} is not used (none of these records has that name)\n",
                  validate::record::staged_name(e.kind), e.record);
 }
 

@@ -49,7 +49,7 @@ void declare(jobs::CommandLine& line, Command& c) {
   line.add("--rate", c.overrides.rate, "samples per second, instead of the config's");
   line.add_flag(
       "--int16", c.overrides.int16,
-      "records as 16-bit numbers: half the bytes, off by at most 0.00077 % of a channel's range in its row");
+      "records as 16-bit numbers: half the bytes, with an error of at most 0.00076 % of a channel's range in its row");
   line.add("--writer-ranks", c.options.writer_ranks, "ranks that make and write a shard together (default 1)")
       .positive();
   line.add("--lease-timeout", c.options.lease_timeout,

@@ -96,7 +96,8 @@ int run(CommandLine& line, int argc, char** argv) {
            "of the plant")
       .positive();
   line.add("--conventions", a.conventions,
-           "psse: governors set power; andes: torque; neither has speed in the stator voltage")
+           "psse: governors set power; andes: torque; both neglect the speed term (omega = 1 pu) in the stator "
+           "voltage equations")
       .one_of({"psse", "andes"})
       .shows_default();
   line.add("--frequency-hz", a.unit.frequency_hz, "nominal frequency [Hz], where the network has none");

@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
     }
   std::fprintf(
       stderr,
-      "no command at '%s' (the name by which the program is started selects it): run swingbank --help\n",
+      "'%s' is not a Swingbank command; start the program through a link swingbank-<command>, or run swingbank --help\n",
       program.c_str());
   return 1;
 }

@@ -48,7 +48,7 @@ std::shared_ptr<live::Setup> read_setup(Command& c) {
   return s;
 }
 
-/// Returns the progress text of the messages of one fit.
+/// Returns a function that formats the progress messages of one fit.
 std::function<std::string(const json&)> progress_text(const std::string& kind) {
   const jobs::ProgressPlan& plan = kind == "diagnose" ? jobs::kDiagnosePlan
                                    : kind == "add"    ? jobs::kAddPlan
@@ -83,7 +83,8 @@ int run(Command& c) {
     return [&setup, step_of] { return std::make_shared<const live::Step>(step_of(*setup)); };
   };
   const Submitted first = std::async(std::launch::async, compared(live::first_step));
-  // Not before a page shows the first step and asks: the comparison would take the browser's processor time.
+  // Computed on request of the page, after the first step is shown, so that the comparison does not take processor
+  // time from the browser.
   Submitted submitted;
   std::once_flag asked;
   jobs::PageParts parts;
@@ -115,7 +116,7 @@ int run(Command& c) {
   jobs::PageServer server(std::move(parts), c.port);
   fmt::print("{}\n", server.url());
   std::fflush(stdout);
-  if (!jobs::quiet) fmt::print(stderr, "The live page is at the address above; Ctrl-C ends it.\n");
+  if (!jobs::quiet) fmt::print(stderr, "The live page is at the URL above; Ctrl-C stops it.\n");
   std::jthread opening;
   if (c.open) opening = std::jthread(open_browser, server.url());
   server.run(stop_asked);
@@ -130,8 +131,8 @@ void declare(jobs::CommandLine& line, Command& c) {
   line.add_flag("--open", c.open, "open the page in your browser");
   line.example("swingbank serve --model plant.toml --records fault1.csv fault2.csv --open");
   line.footer(
-      "Prints the page's address, with a token that no other program knows, and answers on 127.0.0.1 only until "
-      "Ctrl-C or SIGTERM. Exit codes: 0 ended by a signal, 1 an error that was printed.");
+      "Prints the page's URL, which contains a random access token. Listens on 127.0.0.1 only. Ctrl-C or SIGTERM "
+      "stops it. Exit codes: 0 stopped by a signal, 1 an error that was printed.");
 }
 
 }  // namespace

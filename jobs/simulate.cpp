@@ -379,13 +379,13 @@ int run(CommandLine& line, int argc, char** argv) {
       .required();
   line.add("--dyr,--dyd", o.dyr, "dynamic models, format by file extension: PSS/E .dyr, PSLF .dyd")
       .required();
-  line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz], where the network has none");
+  line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz] of a network file without one");
   line.add("--raw-version", o.raw_version, "version of a .raw file without a version number, 23 to 35");
   line.add("--law", o.user_models,
            "file (.toml) of a user-defined model that --attach may use; may be repeated");
   line.add("--convention", o.convention,
-           "psse: governors set power; andes: torque; neither has speed in the stator voltage "
-           "(configs/README.md)")
+           "psse: governors set power; andes: torque; both neglect the speed term (omega = 1 pu) in the stator "
+           "voltage equations (configs/README.md)")
       .one_of({"psse", "andes"})
       .shows_default();
   line.group("Power flow");
@@ -400,33 +400,34 @@ int run(CommandLine& line, int argc, char** argv) {
       .shows_default();
   line.add(
           "--switched-shunts", o.switched_shunts,
-          "fixed: switched shunts stay at BINIT; step: those in discrete steps hold their voltage in the power flow")
+          "fixed: switched shunts stay at BINIT; step: those with discrete steps regulate their voltage in the power flow")
       .one_of({"fixed", "step"})
       .shows_default();
   line.add_choice("--devices", o.devices, grid::kDeviceWords,
                   "power of dc lines, FACTS and GNE devices and induction machines: from the file's "
                   "voltages, if these are a solution (checked) or always (file), or zero (none)");
   line.add("--loads", o.load_model,
-           "impedance: every load at constant impedance; raw: as the .raw composes it of constant "
-           "power, current and admittance; those with a model in the .dyr keep it")
+           "impedance: every load at constant impedance; raw: ZIP components of the .raw (constant power, "
+           "current and admittance); loads with a model in the .dyr keep it")
       .one_of({"impedance", "raw"})
       .shows_default();
   line.add("--load", o.loads, "BUS[/ID]:EFFECT[:PARAM=VALUE,...], a model for one load; may be repeated");
   line.add_flag("--widen-limits", o.widen_limits,
-                "where the operating point lies beyond a control's limit, move the limit there and name it");
+                "where the operating point lies beyond a limit of a control, extend the limit to the operating point "
+                "and report it");
   line.group("Models");
   line.add_choice("--complete-records", o.complete_records, grid::kLackingWords,
-                  "records of the .dyr that are shorter than their model are completed with these values, "
-                  "longer ones are truncated; each is named");
+                  "complete records of the .dyr that are shorter than their model with these values and truncate "
+                  "longer ones; each is listed in a warning");
   line.add_flag("--drop-refused", o.drop_refused,
-                "records of the .dyr whose values their model cannot take are left out, and equipment of the "
-                "network that appears a second time or at a bus that is missing; each is named");
+                "ignore records of the .dyr with inadmissible parameter values, and network equipment with a "
+                "repeated id or at a missing bus; each is listed in a warning");
   line.add_choice(
       "--repeated", o.repeated, grid::kRepeatedWords,
-      "equipment of the network that appears a second time: refused, kept under a new id (keep), or kept "
-      "only where the file's voltages show it (voltages)");
+      "network equipment with a repeated id: refuse it, keep it under a new id (keep), or keep it only if it "
+      "improves the power balance at the file's voltages (voltages)");
   line.add("--ignore-model", o.ignore_models,
-           "names of .dyr models to leave out, comma-separated; may be repeated")
+           "names of .dyr models to ignore, comma-separated; may be repeated")
       .comma_separated();
   line.add("--map-model", o.map_models,
            "FROM=TO,...: read a .dyr model as another with as many parameters; may be repeated")
@@ -437,8 +438,8 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--fault", o.event.faults,
            "BUS:T_ON:T_OFF[:R:X], bolted without R and X [s, pu on the network's base]; may be repeated");
   line.add("--fault-type", o.event.fault_type,
-           "3ph, or by sequence equivalents slg: line to ground, ll: two-phase, llg: two-phase to "
-           "ground; R and X of --fault are then the fault's own")
+           "3ph; slg: line to ground, ll: line to line, llg: double line to ground. With slg, ll and llg, R and X "
+           "are the fault impedance; the negative- and zero-sequence equivalents are added")
       .one_of({"3ph", "slg", "ll", "llg"})
       .shows_default();
   line.add("--z0", o.event.z0,
@@ -448,7 +449,8 @@ int run(CommandLine& line, int argc, char** argv) {
            "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; of a three-winding transformer this opens the winding at FROM, "
            "FROM:TO:THIRD:CKT:T_OPEN[:T_CLOSE] all windings; may be repeated");
   line.add("--trip-generator", o.event.generator_trips,
-           "BUS[/ID]:T[:PART] [s, of its units], for good, without PART all; may be repeated");
+           "BUS[/ID]:T[:PART], trips the generator permanently at T [s]; PART: fraction of the units that trip "
+           "(default 1: all); may be repeated");
   line.add("--load-step", o.event.load_steps,
            "BUS:P:Q:T_ON[:T_OFF] [MW, Mvar, s], consumption added as constant admittance; may be "
            "repeated");
@@ -461,7 +463,7 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--measure-seed", o.measure_seed, "seed of the instruments' noise and gaps").shows_default();
   line.add("--plants", o.plants, "plants to record, comma-separated (default: all)").comma_separated();
   line.add("--channels", o.channels, "channels to record, comma-separated (default: all)").comma_separated();
-  line.add("--buses", o.buses, "buses whose voltage is recorded too, comma-separated numbers")
+  line.add("--buses", o.buses, "numbers of buses whose voltages are also recorded, comma-separated")
       .comma_separated();
   line.add_flag("--after-switching", o.after_switching,
                 "a sample at a switching time has the value just after it");
@@ -472,7 +474,7 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--changes", o.changes, "text file of all changes to the case, one line per change");
   line.group("Expert");
   line.add("--integrator", o.integrator,
-           "reference: IDA on the unreduced equations; lanes: the engine of generate")
+           "reference: IDA on the unreduced equations; lanes: the vectorised (SIMD) solver used by generate")
       .one_of({"reference", "lanes"})
       .shows_default();
   line.add("--tolerance", o.tolerance, "relative error per step (reference 1e-8, lanes 1e-6)");

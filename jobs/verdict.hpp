@@ -31,12 +31,12 @@ struct Judging {
   Option add_to(CommandLine& line,
                 const std::string& preset = validate::thresholds::acceptance_presets().front()) {
     standard = preset;
-    line.add("--pdf", pdf, "the page as PDF too, in this file, printed by Chromium");
+    line.add("--pdf", pdf, "also write the report as PDF to this file (requires Chromium)");
     line.add_flag("--quiet", quiet, "print errors and the result only");
     line.add("--by", signed_by, "name of the signer: printed on the page with date and inputs");
     return line.add(
         "--accept", accept,
-        fmt::format("limits by which the model is fit for purpose: a file (configs/accept/README.md), or "
+        fmt::format("acceptance limits for the fit-for-purpose verdict: a file (configs/accept/README.md), or "
                     "the preset {} (default: {})",
                     fmt::join(validate::thresholds::acceptance_presets(), " or "), preset));
   }

@@ -87,7 +87,7 @@ export function result(message, event, add) {
   by("decide").replaceChildren();
   if (message.next?.length) {
     by("decide").append(
-      make("b", { textContent: "Which measurement would decide: " }),
+      make("b", { textContent: "Possible next measurements: " }),
       message.next
         .slice(0, 3)
         .map((n) => `${n.what} (${digits(message.now, 2)} → ${digits(n.expected, 2)} candidates)`)

@@ -75,7 +75,7 @@ refuses "a line that is cut off" 'cut.csv:201' compare --system "$work/wrong.tom
 sed '50,52s/,[^,]*$/,NaN/' "$work/same.csv" >"$work/lost.csv"
 changed_system 's|same.csv|lost.csv|'
 "$swingbank" compare --system "$work/wrong.toml" --out "$work/lost" >"$work/text" || fail "three lost frames: $(tail -3 "$work/text")"
-grep -q '^note on bus5: 3 of [0-9]* frames are missing' "$work/text" || fail "not said: $(cat "$work/text")"
+grep -q '^note on bus5: 3 of [0-9]* samples are missing' "$work/text" || fail "not said: $(cat "$work/text")"
 sed '50,69s/,[^,]*$/,NaN/' "$work/same.csv" >"$work/nan.csv"
 changed_system 's|same.csv|nan.csv|'
 refuses "not a number" 'nan.csv:50' compare --system "$work/wrong.toml"

@@ -57,7 +57,7 @@ PYTHON
   >"$work/ended.txt" 2>"$work/told" &
 diagnosing=$!
 for ((k = 0; k < 600; ++k)); do
-  grep -q 'So far' "$work/told" && break
+  grep -q 'Preliminary' "$work/told" && break
   sleep 0.1
 done
 kill -TERM "$diagnosing"
