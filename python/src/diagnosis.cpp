@@ -1,4 +1,4 @@
-// Python's Diagnosis: the effect that a plant lacks, with every hypothesis and the inferred inputs.
+// Python's Diagnosis: missing effect of a plant model, with every hypothesis and the inferred inputs.
 #include <fmt/format.h>
 
 #include "base/json.hpp"
@@ -66,18 +66,17 @@ std::string html_of(const Diagnosis& d) {
 }
 
 void bind_class(py::module_& module) {
-  py::class_<Diagnosis, std::shared_ptr<Diagnosis>>(module, "Diagnosis", "The effect that a plant lacks.")
+  py::class_<Diagnosis, std::shared_ptr<Diagnosis>>(module, "Diagnosis", "Missing effect of a plant model.")
       .def_property_readonly(
           "verdict", [](const Diagnosis& d) { return std::string(verdict_name(d.result.verdict)); },
           "\"adequate\", \"missing\", \"confusable\" or \"unexplained\".")
       .def_property_readonly(
           "side", [](const Diagnosis& d) { return std::string(side_name(d.result.side)); },
-          "Side of the plant at fault: \"excitation\", \"mechanical\", \"machine\", \"measurement\".")
+          "Subsystem of the missing effect: \"excitation\", \"mechanical\", \"machine\" or \"measurement\".")
       .def_property_readonly(
           "sentence", [](const Diagnosis& d) { return d.result.sentence; }, "Verdict in words.")
       .def_property_readonly(
-          "effects", [](const Diagnosis& d) { return d.result.effects; },
-          "Name of the missing effect, or of several that act together.")
+          "effects", [](const Diagnosis& d) { return d.result.effects; }, "Names of the missing effects.")
       .def_property_readonly("probabilities", &probabilities,
                              "Probability of each explanation by name, most probable first.")
       .def_property_readonly("hypotheses", &hypotheses,
@@ -85,12 +84,14 @@ void bind_class(py::module_& module) {
                              "accepted, why_not; in descending order of evidence.")
       .def_property_readonly(
           "torque", [](const Diagnosis& d) { return inferred(d, d.result.torque); },
-          "Inferred missing torque by record: (times [s], values [pu]), shape (knots,) each.")
+          "Inferred additional torque [pu on the machine base] for each record: (times [s], values), arrays of\n"
+          "equal length, linearly interpolated.")
       .def_property_readonly(
           "field", [](const Diagnosis& d) { return inferred(d, d.result.field); },
-          "Inferred missing field voltage by record: (times [s], values [pu]), shape (knots,) each.")
+          "Inferred additional field voltage [pu of the air-gap line] for each record: (times [s], values), arrays\n"
+          "of equal length, linearly interpolated.")
       .def_property_readonly(
-          "seconds", [](const Diagnosis& d) { return d.result.seconds; }, "Processing time [s].")
+          "seconds", [](const Diagnosis& d) { return d.result.seconds; }, "Elapsed time [s].")
       .def(
           "to_dict",
           [](const Diagnosis& d) {
@@ -135,13 +136,15 @@ std::shared_ptr<Diagnosis> diagnose_plant(const Plant& self, const py::object& r
 void bind_diagnosis(py::module_& module, PlantClass& of) {
   bind_class(module);
   constexpr double prior = thresholds::parameters.prior_sd;
-  of.def("diagnose", &diagnose_plant, py::arg("records"), py::kw_only(), py::arg("prior_sd") = prior,
-         py::arg("power_only") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
-         py::arg("preliminary") = py::none(),
-         "Names the effect that the plant lacks, from two or more records, as `swingbank diagnose` does.\n\n"
-         "`progress`: called as progress(phase, item, done, total); `preliminary`: called with each\n"
-         "preliminary result in words; `threads`: 0 for one per core; others as for `calibrate`.\n"
-         "Ctrl-C, or an exception of a callback, ends the diagnosis.");
+  of.def(
+      "diagnose", &diagnose_plant, py::arg("records"), py::kw_only(), py::arg("prior_sd") = prior,
+      py::arg("power_only") = false, py::arg("threads") = 0, py::arg("progress") = py::none(),
+      py::arg("preliminary") = py::none(),
+      "Identifies the effect missing from the plant model, from two or more records, as `swingbank diagnose`\n"
+      "does.\n\n"
+      "`progress`: called as progress(phase, item, done, total); `preliminary`: called with each\n"
+      "preliminary result in words; `threads`: 0 for one per core; other parameters as in `calibrate`.\n"
+      "Ctrl-C, or an exception of a callback, ends the diagnosis.");
 }
 
 }  // namespace swingbank::python

@@ -148,8 +148,9 @@ void bind_addition(py::module_& module) {
           "plant", [](const Addition& a) { return plant_of(a.model); },
           "Plant with the effect and the fitted values.")
       .def_readonly("adequate", &Addition::adequate, "Whether only noise remains in every event.")
-      .def_readonly("accepted", &Addition::earns,
-                    "Whether the evidence is strong and no held-out event is worse with the effect.")
+      .def_readonly(
+          "accepted", &Addition::earns,
+          "Whether the evidence is very strong (above 10) and no held-out event is worse with the effect.")
       .def_readonly("evidence", &Addition::evidence, "2 ln(Bayes factor) over the refit without it [-].")
       .def_readonly("sentence", &Addition::sentence, "Result in words.")
       .def_readonly("parameters", &Addition::parameters,

@@ -16,8 +16,9 @@ void bind_fitted(py::module_& module) {
       .def_readonly("error", &FittedParameter::error, "Standard error [unit]; NaN if the fit is singular.")
       .def_readonly("low", &FittedParameter::low, "Lower end of the 95 % interval [unit].")
       .def_readonly("high", &FittedParameter::high, "Upper end of the 95 % interval [unit].")
-      .def_readonly("decided", &FittedParameter::decided,
-                    "Share of the estimate that the records determine, 0 (prior alone) to 1.")
+      .def_readonly(
+          "decided", &FittedParameter::decided,
+          "Reduction of the parameter's variance by the records, 1 - posterior variance / prior variance.")
       .def_readonly("at_bound", &FittedParameter::at_bound,
                     "Whether the value is at its bound, where the interval is not valid.")
       .def("__repr__", [](const FittedParameter& p) {

@@ -10,7 +10,7 @@
 
 namespace swingbank::python {
 
-/// Declares FittedParameter.
+/// Registers the Python class FittedParameter.
 void bind_fitted(pybind11::module_& module);
 /// Returns a table as HTML; texts are escaped.
 std::string table_html(const validate::report::Table& table);

@@ -290,8 +290,10 @@ std::string sentence_of(const Addition& a) {
   }
   const std::string where = any_unseen ? "held-out events" : "all events (none held out)";
   std::string text = fmt::format(
-      "{} {}: on {} the reduced chi-square changes from {:.3g} ({:.3g} refitted without it) to {:.3g}.",
-      a.hypothesis.what, a.earns ? "added" : "not accepted", where, before / n, without / n, after / n);
+      "{} {}: on {} the reduced chi-square {} from {:.3g} (submitted model) to {:.3g}; refitting without {} gives "
+      "{:.3g}.",
+      a.hypothesis.what, a.earns ? "added" : "not accepted", where, after < before ? "falls" : "rises",
+      before / n, after / n, a.hypothesis.name, without / n);
   text.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(text.front())));
   if (a.own > 0) text += " " + own_values(a) + ".";
   std::string residual = a.adequate ? calibrate::residual_text(a.scores())

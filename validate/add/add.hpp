@@ -34,10 +34,10 @@ struct Addition {
   /// Difference of criterion(), without minus with the effect, over the seen events; compared with
   /// thresholds::addition.strong.
   double evidence = 0;
-  bool earns = false;              ///< the evidence is strong, and no unseen event is worse with the effect
-  bool adequate = false;           ///< the residual is noise in every event
-  thresholds::Ruling ruling;       ///< the criterion that decided `adequate`
-  std::string sentence;            ///< result in words
+  bool earns = false;         ///< the evidence is very strong, and no unseen event is worse with the effect
+  bool adequate = false;      ///< the residual is noise in every event
+  thresholds::Ruling ruling;  ///< the criterion that decided `adequate`
+  std::string sentence;       ///< result in words
   noise::WhitenedEvents prepared;  ///< the events with their noise model
   fit::Fit without, with;          ///< fits to the seen events without and with the effect
   double seconds = 0;              ///< processing time [s]

@@ -19,19 +19,18 @@ using nlohmann::json;
 std::string judged_by(const Addition& a) {
   const bool any_unseen = std::ranges::any_of(a.events, [](const auto& e) { return !e.score.seen; });
   return fmt::format(
-      "{} is {} by the criterion of add: evidence above {:g} for a named effect, and {}. "
-      "Diagnose selects one of many effects; it requires evidence above {:g}, prediction of "
-      "every held-out event, and no inferred input with more evidence.",
+      "{} is {}. Criterion: evidence above {:g}{}. `diagnose` compares many effects. It requires evidence above "
+      "{:g}, prediction of every held-out event, and more evidence than any inferred input.",
       a.hypothesis.name, a.earns ? "accepted" : "not accepted", thresholds::addition.strong.value,
-      any_unseen ? "no held-out event worse with it (unless its residual is noise)"
-                 : "no held-out event for a test",
+      any_unseen ? ", and no held-out event fits worse, except within noise"
+                 : " (there is no held-out event)",
       thresholds::evidence.accepted.value);
 }
 
 report::Table values_table(const Addition& a) {
   report::Table t{
       "Parameters",
-      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "determined by records", ""},
+      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "variance reduction", ""},
       {}};
   for (std::size_t i = 0; i < a.parameters.size(); ++i) {
     const auto& p = a.parameters[i];
@@ -76,8 +75,9 @@ report::Table addition_table(const Addition& a) {
 std::string terminal_report(const Addition& a) {
   return a.sentence + "\n\n" + report::padded(addition_table(a), 1) + "\n" +
          report::padded(values_table(a), 1) +
-         fmt::format("\nEvidence, 2 ln(Bayes factor): {:.1f}; above {:g} is strong.\n{}\n", a.evidence,
-                     thresholds::addition.strong.value, judged_by(a));
+         fmt::format(
+             "\nEvidence, 2 ln(Bayes factor): {:.1f}; above {:g}: very strong (Kass and Raftery 1995).\n{}\n",
+             a.evidence, thresholds::addition.strong.value, judged_by(a));
 }
 
 json addition_json(const Addition& a) {

@@ -346,7 +346,7 @@ class Calibrating {
       widening[i] = std::sqrt(std::max(1.0, robust(i, i) / inverse(i, i)));
     }
     fill_parameters(inverse, unit, widening);
-    c_.blurs = find_blurs(data, unit);
+    c_.unidentified = find_unidentified(data, unit);
     if (!options_.only_given) try_others(data + prior, inverse, unit, widening);
     for (std::size_t e = 0; e < jacobians.size(); ++e)  // effect of parameter uncertainty on held-out events
       allowance_.push_back(

@@ -60,16 +60,17 @@ struct EventScore {
   [[nodiscard]] bool is_noise() const { return thresholds::within_limit(after, limit - allowance); }
 };
 
-/// Poorly identified direction in parameter space: moving along it hardly changes the simulated response.
-struct Blur {
-  /// Component of the direction along one parameter.
+/// Parameter combination that the records do not identify: a change along it hardly changes the simulated
+/// response.
+struct UnidentifiedCombination {
+  /// Component of the combination along one parameter.
   struct Member {
     int parameter;  ///< index into Calibration::parameters
-    double change;  ///< change for one standard deviation along the direction [unit of the parameter]
+    double change;  ///< change for one standard deviation along the combination [unit of the parameter]
   };
   std::vector<Member> members;  ///< the largest first
-  double decided = 0;           ///< share of the direction's posterior precision that comes from the records
-  bool alone = false;           ///< the direction is a single parameter
+  double decided = 0;           ///< share of the posterior precision that comes from the records
+  bool alone = false;           ///< the combination is a single parameter
 };
 
 /// Simulated event that was not recorded, with the parameter errors that it would give.
@@ -103,16 +104,16 @@ struct StartScore {
 
 /// Result of a calibration.
 struct Calibration {
-  plant::PlantModel model;                      ///< with the fitted values
-  Adequacy adequacy = Adequacy::adequate;       ///< verdict
-  thresholds::Ruling ruling;                    ///< criterion and figures behind `adequacy`
-  std::string sentence;                         ///< verdict in words
-  std::vector<CalibratedParameter> parameters;  ///< free parameters
-  Eigen::MatrixXd correlation;                  ///< correlation of the estimates [parameter][parameter]
-  std::vector<Blur> blurs;                      ///< poorly identified directions
-  std::vector<Candidate> candidates;            ///< simulated events of a further measurement
-  std::vector<EventScore> events;               ///< scores of all events, in the order given
-  double before = 0, after = 0, limit = 0;      ///< reduced chi-square of the fitted events
+  plant::PlantModel model;                            ///< with the fitted values
+  Adequacy adequacy = Adequacy::adequate;             ///< verdict
+  thresholds::Ruling ruling;                          ///< criterion and figures behind `adequacy`
+  std::string sentence;                               ///< verdict in words
+  std::vector<CalibratedParameter> parameters;        ///< free parameters
+  Eigen::MatrixXd correlation;                        ///< correlation of the estimates [parameter][parameter]
+  std::vector<UnidentifiedCombination> unidentified;  ///< parameter combinations that are not identified
+  std::vector<Candidate> candidates;                  ///< simulated events of a further measurement
+  std::vector<EventScore> events;                     ///< scores of all events, in the order given
+  double before = 0, after = 0, limit = 0;            ///< reduced chi-square of the fitted events
   int starts = 0, agreeing = 0;         ///< number of refined starts; number that reached the best optimum
   std::vector<StartScore> started;      ///< each refined start, in the order tried
   bool converged = false;               ///< the search ended at a minimum

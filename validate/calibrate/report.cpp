@@ -92,24 +92,25 @@ std::string adequacy_name(Adequacy adequacy) {
   return "structure not adequate";
 }
 
-std::string describe(const Calibration& c, const Blur& blur) {
+std::string describe(const Calibration& c, const UnidentifiedCombination& combination) {
   std::string members;
-  for (const auto& m : blur.members) {
+  for (const auto& m : combination.members) {
     const auto& p = c.parameters[static_cast<std::size_t>(m.parameter)].fit;
     members += fmt::format("{}{} {:+.2g} {}", members.empty() ? "" : ", ", p.full_name(), m.change, p.unit);
   }
-  if (blur.alone)
-    return c.parameters[static_cast<std::size_t>(blur.members.front().parameter)].fit.full_name() +
-           " alone has no significant influence on these records (" + percent(blur.decided) + " determined)";
+  if (combination.alone)
+    return c.parameters[static_cast<std::size_t>(combination.members.front().parameter)].fit.full_name() +
+           " alone has no significant influence on these records (" + percent(combination.decided) +
+           " determined)";
   return "not identified separately: " + members +
-         " together have no significant influence on these records (" + percent(blur.decided) +
+         " together have no significant influence on these records (" + percent(combination.decided) +
          " determined)";
 }
 
 report::Table parameter_table(const Calibration& c) {
   report::Table t{
       "Parameters",
-      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "determined by records", ""},
+      {"parameter", "unit", "start", "value", "std. error", "95 % interval", "variance reduction", ""},
       {}};
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
     const auto& p = c.parameters[i].fit;
@@ -146,7 +147,7 @@ std::string terminal_report(const Calibration& c) {
     text +=
         "Some values are far outside the prior (--spread), which biases them and correlated "
         "values. Calibrate again from the new model, or with a larger --spread.\n";
-  for (const auto& blur : c.blurs) text += "- " + describe(c, blur) + "\n";
+  for (const auto& combination : c.unidentified) text += "- " + describe(c, combination) + "\n";
   const std::string events = identify_text(c);
   if (!events.empty()) text += "Next measurement for each parameter that is not identified:\n" + events;
   return text;
@@ -195,13 +196,13 @@ json calibration_json(const Calibration& c) {
       row.push_back(c.correlation(static_cast<Eigen::Index>(i), k));
     j["correlation"].push_back(row);
   }
-  for (const auto& blur : c.blurs) {
+  for (const auto& combination : c.unidentified) {
     json members = json::array();
-    for (const auto& m : blur.members) {
+    for (const auto& m : combination.members) {
       const auto& p = c.parameters[static_cast<std::size_t>(m.parameter)].fit;
       members.push_back({{"parameter", p.full_name()}, {"change", m.change}, {"unit", p.unit}});
     }
-    j["not_told_apart"].push_back({{"members", members}, {"decided_by_records", blur.decided}});
+    j["not_told_apart"].push_back({{"members", members}, {"decided_by_records", combination.decided}});
   }
   for (const auto& candidate : c.candidates)
     j["events_tried"].push_back({{"event", candidate.what}, {"standard_errors", candidate.error}});

@@ -27,6 +27,6 @@ std::vector<std::string> provenance_lines(const Calibration& c, const std::strin
 /// Returns the verdict in the JSON.
 std::string adequacy_name(Adequacy adequacy);
 /// Sentence that describes a poorly identified direction.
-std::string describe(const Calibration& c, const Blur& blur);
+std::string describe(const Calibration& c, const UnidentifiedCombination& combination);
 
 }  // namespace swingbank::validate::calibrate

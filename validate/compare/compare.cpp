@@ -186,11 +186,10 @@ bool is_closer(const EventComparison& other, const EventComparison& than) {
 std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
   const std::string what =
       e.record.component == record::Component::plant ? "P and Q" : "the compared signals";
-  if (e.fitted) return "they were then fitted to " + what + " within these intervals.";
+  if (e.fitted) return "within these intervals they were then fitted to " + what + ".";
   if (!failed.empty())
-    return "the fit within these intervals failed, so the middle of each is used (" + failed + ").";
-  return tried ? "no time within these intervals fits " + what + " better than their middle."
-               : "the middle of each interval is used.";
+    return "the interval midpoints are used, because the fit within these intervals failed (" + failed + ").";
+  return tried ? "the interval midpoints fit " + what + " best." : "the interval midpoints are used.";
 }
 
 void explain(EventComparison& e, switching::StepShape step_shape, bool tried, const std::string& failed) {
@@ -203,7 +202,7 @@ void explain(EventComparison& e, switching::StepShape step_shape, bool tried, co
   else if (e.detected && !e.switchings.empty())
     e.notes.push_back(
         fmt::format("The switching times were estimated from the record (each to ± {:.1f} ms); "
-                    "{} Give them with --switch where they are known.",
+                    "{} If the times are known, specify them with --switch.",
                     1e3 * e.switchings.front().uncertainty, describe_fit(e, tried, failed)));
   if (std::ranges::any_of(e.switchings, [](const switching::Switching& s) { return s.turn != 0; })) {
     std::string turns;

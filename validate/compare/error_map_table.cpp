@@ -21,18 +21,30 @@ double shade(const TimeFrequencyBin& bin) {
   return std::clamp(0.35 + 0.65 * std::log(bin.normalised / bin.bound) / std::log(25.0), 0.0, 1.0);
 }
 
+/// Returns a percentage without an exponent from 10 on.
+std::string percent_text(double percent) {
+  return percent < 10 ? fmt::format("{:.2g}", percent) : fmt::format("{:.0f}", percent);
+}
+/// Returns the nominal value of the channel, "100 MVA" or "60 Hz".
+std::string nominal_text(const LabelledMap& m) {
+  const double nominal = m.size * m.scale;
+  if (m.unit == "mHz") return fmt::format("{:.4g} Hz", nominal / 1e3);
+  return fmt::format("{:.4g} {}", nominal, m.unit == "MW" || m.unit == "Mvar" ? "MVA" : m.unit);
+}
+
 /// Returns a cell of the map. Its hint: the error in units, in % of the nominal value, and against the bound.
 report::Cell map_cell(const LabelledMap& m, const std::string& window, std::string_view band,
                       const TimeFrequencyBin& bin) {
   if (bin.empty()) return {"–"};
   report::Cell cell(report::times_noise(bin.normalised) + (bin.exceeds() ? " *" : ""), shade(bin));
   const double error = bin.rms * m.scale;
-  cell.hint = fmt::format("{} of {}, {}, {}: RMS {:.3g} {}", m.channel, m.event, window, band, error, m.unit);
+  cell.hint =
+      fmt::format("{} of {}, {}, {}: RMS {:.3g} {}", m.channel == "speed" ? "speed deviation" : m.channel,
+                  m.event, window, band, error, m.unit);
   if (m.size > 0)
-    cell.hint += fmt::format(", {:.2g} % of {:.4g} {}", 100 * bin.rms / m.size, m.size * m.scale,
-                             m.unit == "MW" || m.unit == "Mvar" ? "MVA" : m.unit);
-  cell.hint += fmt::format("; {} noise, bound {}", report::times_noise(bin.normalised),
-                           report::times_noise(bin.bound));
+    cell.hint += fmt::format(", {} % of {}", percent_text(100 * bin.rms / m.size), nominal_text(m));
+  cell.hint += fmt::format("; normalised RMS {} (limit {})", report::ratio_text(bin.normalised),
+                           report::ratio_text(bin.bound));
   return cell;
 }
 
@@ -78,7 +90,8 @@ void keep_worse(std::vector<MapRow>& worst, const std::vector<MapRow>& row) {
     if (!row[k].bin->empty() && (!worst[k].bin || ratio(row[k]) > ratio(worst[k]))) worst[k] = row[k];
 }
 
-/// Text ", in n of m events": events in which the bin exceeds its bound, of those that have the bin.
+/// Returns " This bin exceeds its limit in n of m events.", of the events that have the bin; empty for one
+/// event.
 std::string events_beyond(const std::vector<LabelledMap>& maps, const std::string& channel,
                           const std::string& window, std::size_t band) {
   int beyond = 0, all = 0;
@@ -89,14 +102,14 @@ std::string events_beyond(const std::vector<LabelledMap>& maps, const std::strin
       ++all;
       beyond += m.map->rows[w].bands[band].exceeds() ? 1 : 0;
     }
-  return all > 1 ? fmt::format(", in {} of {} events", beyond, all) : "";
+  return all > 1 ? fmt::format(" This bin exceeds its limit in {} of {} events.", beyond, all) : "";
 }
 
 constexpr const char* kCaption =
     "Normalised RMS of the residual per time window and frequency band: each component is "
     "divided by its standard deviation under coloured noise, so that noise alone gives 1 ×. "
-    "Windows “after” count from the last switching, others from the first sample. * = above "
-    "the joint noise limit of all bins; “–”: the window is too short for the band.";
+    "“After”: time since the last switching. “Fault”: first to last switching. “Pre-event”: before the first "
+    "switching. * = above the joint noise limit of all bins; “–”: the window is too short for the band.";
 
 }  // namespace
 
@@ -166,10 +179,13 @@ std::string map_sentence(const std::vector<LabelledMap>& maps) {
     text += text.empty() ? "" : " ";
     text +=
         worst.empty()
-            ? channel + " is within its noise everywhere."
-            : fmt::format("{} is furthest above its noise bound in the window “{}” at {}: {} noise{}.",
-                          channel, window, error_bands()[band].name, report::times_noise(worst.normalised),
-                          events_beyond(maps, channel, window, band));
+            ? channel + ": all bins are within their noise limits."
+            : fmt::format(
+                  "{}: largest exceedance of a noise limit in the window {}{}, band {}: normalised RMS {} (limit "
+                  "{}).{}",
+                  channel, window, window.ends_with(" after") ? " the last switching" : "",
+                  error_bands()[band].name, report::ratio_text(worst.normalised),
+                  report::ratio_text(worst.bound), events_beyond(maps, channel, window, band));
   }
   return text;
 }

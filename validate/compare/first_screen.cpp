@@ -243,6 +243,7 @@ void first_screen(report::Document& document, const FirstScreen& s) {
   document.add(report::Opening{s.headline, s.reasons, s.tone});
   if (s.before && !s.before->events.empty()) {
     document.add(chips(s));
+    document.note("✕ exceeds an engineering limit; ! exceeds only the noise limit of a bin; ✓ within both.");
     large_charts(document, s);
     if (s.after && !s.after->events.empty()) document.add(fall(s));
   }

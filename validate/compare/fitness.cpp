@@ -77,9 +77,9 @@ std::string nearest_text(const Fitness& f) {
   if (const auto m = std::ranges::max_element(f.movements, {}, beyond);
       m != f.movements.end() && !(beyond(*m) <= ratio(row)))
     return fmt::format(
-        "RMS error of {} after the last switching of {}: {:.3g} % of the measured movement of {:.3g} {} (limit {:g} %); "
-        "the modelled movement is {:.0f} % of the measured one.",
-        m->channel, m->event, m->error, m->measured, m->unit, m->limit, m->share);
+        "RMS error of {0} after the last switching of {1}: {2:.3g} % of the measured change of {0} ({3:.3g} {4}; limit "
+        "{5:g} %). Regression coefficient of the modelled on the measured deviation: {6:.2f} (1: equal).",
+        m->channel, m->event, m->error, m->measured, m->unit, m->limit, m->share / 100);
   const thresholds::Nearest at = thresholds::nearest(row.errors, row.limits);
   return fmt::format("{} of {} in the {} window of {}, {:.3g} % of {:g} MVA; the limit is {:g} %.", at.name,
                      row.channel, row.window(), row.event, at.error, f.mva, at.limit);
@@ -108,8 +108,8 @@ std::vector<report::Cell> cells_of(const JudgedErrors& of, const std::array<cons
   const auto add = [&](double error, double limit, const char* sign) {
     const bool within = std::abs(error) <= limit;
     cells.emplace_back(std::isfinite(error)
-                           ? fmt::format("{:.2f} of {}{:g} %{}", std::abs(error) < 0.005 ? 0.0 : error, sign,
-                                         limit, within ? "" : " *")
+                           ? fmt::format("{:.2f} % (limit {}{:g} %){}", std::abs(error) < 0.005 ? 0.0 : error,
+                                         sign, limit, within ? "" : " *")
                            : "not finite *",
                        within ? 0.0 : 1.0);
   };
@@ -217,15 +217,16 @@ report::Table worst_fitness_table(const Fitness& f) {
 
 report::Table movement_table(const Fitness& f) {
   report::Table table{
-      "Movement of P and Q after the last switching: RMS of the measured deviation from the "
-      "mean before the event, and RMS of modelled − measured in % of it. A star marks a value "
-      "above its limit.",
-      {"event", "channel", "measured movement", "reproduced by the model", "error"},
+      "Change of P and Q after the last switching: RMS of the measured deviation from the mean before the event, "
+      "RMS of modelled − measured in % of it, and regression coefficient of the modelled on the measured deviation "
+      "(1: equal). A star marks a value above its limit.",
+      {"event", "channel", "measured change", "regression coefficient", "error"},
       {}};
   for (const Movement& m : f.movements)
     table.rows.push_back(
-        {m.event, m.channel, fmt::format("{:.3g} {}", m.measured, m.unit), fmt::format("{:.0f} %", m.share),
-         report::Cell(fmt::format("{:.3g} of {:g} %{}", m.error, m.limit, m.exceeds() ? " *" : ""),
+        {m.event, m.channel, fmt::format("{:.3g} {}", m.measured, m.unit),
+         fmt::format("{:.2f}", m.share / 100),
+         report::Cell(fmt::format("{:.3g} % (limit {:g} %){}", m.error, m.limit, m.exceeds() ? " *" : ""),
                       m.exceeds() ? 1.0 : 0.0)});
   return table;
 }

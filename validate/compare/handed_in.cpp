@@ -32,9 +32,10 @@ report::Table usability_table(const HandedIn& model) {
   report::Table table{
       fmt::format(
           "Simulated for {:g} s from the operating point of each event, against an infinite bus behind {:g} pu "
-          "on {:g} MVA. Drift: largest deviation of P or Q without a disturbance; it has no limit here. "
-          "Oscillation: the least damped one of P and Q after a {}. Damped: synchronism is "
-          "kept, the movement falls, and the damping ratio is positive (Kundur 1994, 12.1).",
+          "on {:g} MVA. Drift: largest deviation of P or Q without a disturbance; reported without a limit. "
+          "Oscillation: least damped mode of P and Q after a {}; amplitude: that of the mode just after the step, in "
+          "P or Q, whichever is larger. Damped: the machine stays in synchronism, the changes of P and Q decrease from "
+          "the first to the second half, and the damping ratio is positive (Kundur 1994, 12.1).",
           usability::kStudyDuration, usability::kStudyReactance, model.mva, u.step),
       {"event", "P [MW]", "Q [Mvar]", "V [pu]", "initialises", "drift [% of MVA]", "oscillation [Hz]",
        "damping ratio [%]", "amplitude [% of MVA]", "damped"},
@@ -106,7 +107,7 @@ std::string handed_in_text(const HandedIn& model) {
     text += fmt::format("; drift in {:g} s {} % of MVA", usability::kStudyDuration, drift_text(drift));
   if (least)
     text +=
-        fmt::format("; least damping ratio {:.1f} % at {:.2f} Hz", 100 * least->damping, least->frequency);
+        fmt::format("; minimum damping ratio {:.1f} % at {:.2f} Hz", 100 * least->damping, least->frequency);
   text += "\n";
   for (const UsabilityAt& at : u.at)
     if (!at.failure.empty()) text += fmt::format("  {}: {}\n", at.state.event, at.failure);

@@ -91,10 +91,10 @@ Adequacy judge(std::vector<EventComparison>& events) {
   a.sentence += fmt::format(" (joint {:g} % level).", 100 * (1 - thresholds::adequacy.false_alarm));
   if (worst)
     a.sentence += fmt::format(
-        " {}: {} {} of {}, RMS {:.3g} {}, normalised RMS {} where {} is allowed.",
+        " {}: {} {} of {}, RMS {:.3g} {}, normalised RMS {} (limit {}).",
         a.adequate ? "Nearest to its bound" : "Largest violation", worst->channel->name, worst->where,
         worst->event->record.name, worst->bin->rms * worst->channel->scale, worst->channel->unit,
-        report::times_noise(worst->bin->normalised), report::times_noise(worst->bin->bound));
+        report::ratio_text(worst->bin->normalised), report::ratio_text(worst->bin->bound));
   return a;
 }
 

@@ -105,7 +105,7 @@ std::string switching_times_text(const EventComparison& e) {
   return text.empty() ? "none"
                       : text + (!e.detected ? " (given)"
                                 : e.fitted  ? " (estimated and fitted)"
-                                            : " (found)");
+                                            : " (estimated)");
 }
 
 void event_panels(report::Document& page, const std::vector<Played>& played, std::size_t event, bool large) {
@@ -218,13 +218,14 @@ void parameters_part(report::Document& page, const std::vector<PageParameter>& p
   page.section("Parameters");
   const bool fitted = std::ranges::any_of(parameters, [](const auto& p) { return std::isfinite(p.low); });
   report::Table table{
-      fitted ? "Values before and after the fit, with 95 % intervals and the share of the interval that "
-               "the records determine."
-             : "Model parameters (unchanged).",
+      fitted
+          ? "Values before and after the fit, with 95 % intervals. Variance reduction: 1 − posterior variance / prior "
+            "variance of the parameter, by the records."
+          : "Model parameters (unchanged).",
       {"parameter", "unit", fitted ? "before" : "value"},
       {}};
   if (fitted)
-    table.header.insert(table.header.end(), {"after", "95 % interval", "determined by records", "note"});
+    table.header.insert(table.header.end(), {"after", "95 % interval", "variance reduction", "note"});
   for (const PageParameter& p : parameters) {
     std::vector<report::Cell> row = {p.block + " " + p.symbol, p.unit, number_text(p.before)};
     if (fitted) {
@@ -285,6 +286,10 @@ void glossary_part(report::Document& page) {
         "Root mean square of the residual's components (frequencies in the error map, whitened "
         "samples in a fit), each divided by its standard deviation under coloured noise. Noise "
         "alone gives 1. Its square is the reduced chi-square."},
+       {"speed deviation [mHz]", "Deviation of the speed from nominal, times the nominal frequency."},
+       {"Efd, Ifd [pu]",
+        "Field voltage and field current per unit of the air-gap line: 1 pu gives rated terminal voltage at no load "
+        "without saturation."},
        {"bin",
         "One time window and one frequency band of one channel in the error map. Noise alone "
         "stays below its bound."},
@@ -293,9 +298,11 @@ void glossary_part(report::Document& page) {
         "added parameters."},
        {"fit, verification",
         "Use of an event: the parameters were fitted to it, or it was held out and verifies the fit."},
-       {"prior", "Standard deviation of a parameter before the records were used (--spread)."},
-       {"determined",
-        "Share of a parameter's interval that is determined by the records, not by the prior."}}});
+       {"prior standard deviation",
+        fmt::format("Relative to the model's value, before the records are used (--spread, default {:g}).",
+                    thresholds::parameters.prior_sd.value)},
+       {"variance reduction",
+        "Reduction of the parameter's variance by the records: 1 − posterior variance / prior variance."}}});
   page.add(report::End{});
 }
 

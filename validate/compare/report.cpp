@@ -202,8 +202,9 @@ report::Provenance provenance(const plant::PlantModel& model, const std::vector<
       "conventions",
       fmt::format(
           "{}; {}; {:g} Hz",
-          model.conventions.speed_voltage ? "speed in the stator voltage" : "no speed in the stator voltage",
-          model.conventions.mechanical_power ? "mechanical power held" : "mechanical torque held",
+          model.conventions.speed_voltage ? "speed variation included in the stator voltage equations"
+                                          : "speed variation neglected in the stator voltage equations",
+          model.conventions.mechanical_power ? "constant mechanical power" : "constant mechanical torque",
           model.conventions.frequency));
   if (!model.defaults.empty())
     rows.emplace_back("default values", fmt::format("{}", fmt::join(model.defaults, ", ")));

@@ -133,11 +133,11 @@ class DiagnosisPage {
       bars.bars.push_back({d_.probabilities[i].name, 100 * d_.probabilities[i].probability,
                            i < set ? "good" : "poor",
                            report::probability_text(d_.probabilities[i].probability)});
-    page_.text(
-        fmt::format("Probability of each explanation, including that none of the tried effects is right. The "
-                    "blue bars form the {:.0f} % credible set. Measured reliability of these probabilities: "
-                    "docs/reference/blind-test-results.md. {}",
-                    100 * thresholds::posterior.set, false_positive_note()));
+    page_.text(fmt::format(
+        "Probability of each explanation, including that none of the tried effects is right. The "
+        "blue bars form the {:.0f} % credible set. {} Measured reliability of these probabilities: "
+        "docs/reference/blind-test-results.md. {}",
+        100 * thresholds::posterior.set, tempering_note(), false_positive_note()));
     page_.add(report::Begin{report::Begin::Layout::row});
     page_.add(bars);
     next_measurements();
@@ -147,9 +147,10 @@ class DiagnosisPage {
   void next_measurements() {
     if (d_.would_decide.next.empty()) return;
     report::Table table{
-        fmt::format("Next measurement: expected number of the {:.0f} candidates that remain, from "
-                    "simulations of the record with each candidate.",
-                    d_.would_decide.now),
+        fmt::format(
+            "Possible next measurements, with the expected number of remaining candidates (now {:.0f}), from "
+            "simulations of the record with each candidate.",
+            d_.would_decide.now),
         {"record", "remaining candidates"},
         {}};
     for (const auto& n : d_.would_decide.next) {
@@ -229,8 +230,8 @@ class DiagnosisPage {
     if (d_.torque.fit.events.empty() && d_.field.fit.events.empty()) return;
     page_.section("Excitation or mechanical side");
     page_.text(
-        "Before the search for effects, a mechanical torque and then a field voltage, free in "
-        "time, were inferred such that the response matches the records. The input with the "
+        "An additional mechanical torque, then an additional field voltage, were estimated as arbitrary functions "
+        "of time (unknown-input estimation) so that the response fits the records. The input with the "
         "smaller residual indicates the side of the missing component.");
     report::Bars bars{"Normalised RMS", "×", 1.0, "noise alone", {}};
     const auto add = [&](const std::string& name, double reduced_chi2) {
@@ -255,12 +256,13 @@ class DiagnosisPage {
   void hypotheses() {
     if (d_.ranked.empty()) return;
     page_.section("Hypotheses");
-    page_.text(
-        fmt::format("{} effects were added one at a time. Each was fitted together with the model's "
-                    "parameters until its rank was clear. Evidence is 2 ln(Bayes factor) of the effect "
-                    "(Laplace's approximation): {:.0f} or more is accepted; below 0 the added parameters do "
-                    "not improve the model. The leading effects were then judged on held-out events.",
-                    d_.ranked.size(), thresholds::evidence.accepted.value));
+    page_.text(fmt::format(
+        "{} effects were added one at a time. The most probable effects were fitted together with the "
+        "model's parameters; the others were ranked by a preliminary estimate (marked “not "
+        "fitted”). Evidence is 2 ln(Bayes factor) of the effect "
+        "(Laplace's approximation): {:.0f} or more is accepted; below 0 the added parameters do "
+        "not improve the model. The leading effects were then judged on held-out events.",
+        d_.ranked.size(), thresholds::evidence.accepted.value));
     const double most = std::max(1.0, d_.ranked.front().gain);
     report::Bars bars{
         "Evidence (logarithmic)", "", std::log10(thresholds::evidence.accepted.value), "accepted", {}};
@@ -278,12 +280,12 @@ class DiagnosisPage {
     for (const auto& h : d_.ranked) {
       double worst = 0;
       for (const auto& u : h.held_out) worst = std::max(worst, std::sqrt(u.after));
-      table.rows.push_back({hypothesis::full_name(h.hypothesis), h.hypothesis.what,
-                            std::string(hypothesis::side_name(h.hypothesis.side)),
-                            fmt::format("{:.1f}", h.gain),
-                            h.fit.values > 0 ? report::times_noise(std::sqrt(h.fit.reduced_chi2())) : "–",
-                            h.held_out.empty() ? "–" : "≤ " + report::times_noise(worst),
-                            h.accepted ? "accepted" : h.why_not});
+      table.rows.push_back(
+          {hypothesis::full_name(h.hypothesis), h.hypothesis.what,
+           std::string(hypothesis::side_name(h.hypothesis.side)), fmt::format("{:.1f}", h.gain),
+           h.fitted && h.fit.values > 0 ? report::times_noise(std::sqrt(h.fit.reduced_chi2())) : "",
+           h.held_out.empty() ? "–" : "≤ " + report::times_noise(worst),
+           h.accepted ? "accepted" : h.why_not});
     }
     page_.add(table);
     page_.add(report::End{});
@@ -318,12 +320,12 @@ class DiagnosisPage {
     if (last.parameters.empty()) return;  // the addition is an inferred input
     page_.section("Parameters");
     report::Table table{
-        "Fitted values with 95 % intervals. Last column: share of the interval that the records "
-        "determine; the prior determines the rest.",
+        "Fitted values with 95 % intervals. Last column: reduction of the parameter's variance by the records, "
+        "1 − posterior variance / prior variance.",
         {"parameter", "unit", "submitted", "refitted"},
         {}};
     if (with_after()) table.header.push_back("with " + figures_.after_name);
-    table.header.insert(table.header.end(), {"95 % interval", "determined by records"});
+    table.header.insert(table.header.end(), {"95 % interval", "variance reduction"});
     for (const auto& p : last.parameters) {
       const auto base = std::ranges::find_if(d_.base.parameters, [&](const fit::FittedParameter& b) {
         return b.block == p.block && b.name == p.name;
@@ -387,9 +389,10 @@ class DiagnosisPage {
     page_.add(report::Begin{report::Begin::Layout::fold, "Method"});
     page_.text(
         "Playback of the recorded terminal voltage and angle into the model, with the response "
-        "compared with the measurement for each event, as in verification reports under NERC "
-        "MOD-026 and MOD-027 (plants) and MOD-033 (systems). These standards set no numerical "
-        "tolerance; this page uses the 99 % band of the noise, estimated before each event.");
+        "compared with the measurement for each event, as in model verification reports under NERC "
+        "MOD-026-2 (formerly MOD-026-1 and MOD-027-1) and MOD-033 (systems). These standards set no numerical "
+        "tolerance. The verdicts use the limits of “Verdicts” and the joint 99.9 % noise limit of the error map. "
+        "The table of tolerances uses the 99 % band of the noise, estimated before each event.");
     page_.text(
         "“Refitted” means the submitted structure with its parameters fitted to all events; an "
         "error that remains is not caused by the parameters. A bin of the error map is the RMS "

@@ -19,13 +19,13 @@ constexpr double kShownFrom = 0.01;  ///< minimum probability of a printed expla
 void add_inputs(const Diagnosis& d, std::string& text) {
   if (d.torque.fit.events.empty() || d.field.fit.events.empty()) return;  // interrupted before the inference
   text += fmt::format(
-      "\nReduced chi-square (1: noise): {:.2f} with refitted parameters, {:.2f} with an "
-      "inferred torque, {:.2f} with an inferred field voltage.\n",
+      "\nReduced chi-square after the complete refit (noise: 1): {:.2f}; with an unknown mechanical torque: {:.2f}; "
+      "with an unknown field voltage: {:.2f}.\n",
       d.base.reduced_chi2(), d.torque.reduced_chi2(), d.field.reduced_chi2());
 }
 void add_probabilities(const Diagnosis& d, std::string& text) {
   if (d.probabilities.empty()) return;
-  text += "\nProbability of each explanation, 'none of these' included:\n";
+  text += fmt::format("\n{}\nProbability of each explanation, 'none of these' included:\n", tempering_note());
   const std::size_t set = hypothesis::credible(d.probabilities);
   for (std::size_t i = 0; i < d.probabilities.size(); ++i)
     if (i < set || d.probabilities[i].probability >= kShownFrom)
@@ -35,13 +35,17 @@ void add_probabilities(const Diagnosis& d, std::string& text) {
           i < set ? ""
                   : fmt::format("  (outside the {:.0f} % credible set)", 100 * thresholds::posterior.set));
   if (d.would_decide.next.empty()) return;
-  text += fmt::format("\nNext measurement, and expected number of the {:.0f} candidates that remain:\n",
-                      d.would_decide.now);
+  text += fmt::format(
+      "\nPossible next measurements, with the expected number of remaining candidates (now {:.0f}):\n",
+      d.would_decide.now);
   for (const auto& n : d.would_decide.next) text += fmt::format("  {:>6.1f}  {}\n", n.expected, n.what);
 }
 void add_hypotheses(const Diagnosis& d, std::string& text) {
-  text += fmt::format("\n{:<18} {:<12} {:>12} {:>10} {:>22}  {}\n", "hypothesis", "side", "evidence",
-                      "red. chi2", "unseen: before, after", "judgement");
+  text += fmt::format(
+      "\nred. chi2: reduced chi-square; held-out red. chi2: mean over the held-out events\n"
+      "{:<18} {:<12} {:>12} {:>10} {:>40}  {}\n",
+      "hypothesis", "side", "evidence", "red. chi2", "held-out red. chi2: refitted → with effect",
+      "judgement");
   for (std::size_t i = 0; i < d.ranked.size() && i < kHypothesesShown; ++i) {
     const hypothesis::Judgement& j = d.ranked[i];
     double before = 0, after = 0;
@@ -49,9 +53,10 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
       before += h.before / static_cast<double>(j.held_out.size());
       after += h.after / static_cast<double>(j.held_out.size());
     }
-    text += fmt::format("{:<18} {:<12} {:>12.1f} {:>10.3f} {:>22}  {}\n", hypothesis::full_name(j.hypothesis),
-                        hypothesis::side_name(j.hypothesis.side), j.gain, j.fit.reduced_chi2(),
-                        j.held_out.empty() ? "" : fmt::format("{:.2f}, {:.3f}", before, after),
+    text += fmt::format("{:<18} {:<12} {:>12.1f} {:>10} {:>40}  {}\n", hypothesis::full_name(j.hypothesis),
+                        hypothesis::side_name(j.hypothesis.side), j.gain,
+                        j.fitted ? fmt::format("{:.3f}", j.fit.reduced_chi2()) : "",
+                        j.held_out.empty() ? "" : fmt::format("{:.2f} → {:.3f}", before, after),
                         j.accepted ? "accepted" : j.why_not);
   }
   if (d.ranked.size() > kHypothesesShown)

@@ -1,5 +1,5 @@
 #pragma once
-// Separation of the tested unit from a record taken at a common measuring point of several units.
+// Subtraction of the other units' simulated power from a record at a common measuring point.
 #include <complex>
 #include <filesystem>
 #include <string>

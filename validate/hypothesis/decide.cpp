@@ -70,7 +70,7 @@ class Separations {
   Separations(std::vector<const Judgement*> competitors, const noise::WhitenedEvents& events, double prior_sd)
       : competitors_(std::move(competitors)), events_(events), known_(competitors_.size()) {
     for (std::size_t e = 0; e < events.size(); ++e)
-      scenes_.push_back({events[e], static_cast<int>(e), "in one more event like " + events[e].record.name});
+      scenes_.push_back({events[e], static_cast<int>(e), "in an event like " + events[e].record.name});
     scenes_.push_back({quiet(events.front(), kFrequencyDip), -1,
                        fmt::format("after a remote load step (frequency falls by {} Hz)", kFrequencyDip)});
     event::FitEvent step = quiet(events.front(), 0);
@@ -233,7 +233,7 @@ Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vect
     const Scene& s = between.scenes()[scene];
     // Of the events like recorded ones, only the best is kept.
     const auto like = std::ranges::find_if(d.next, [&](const NextRecord& n) {
-      return s.recorded >= 0 && n.what.starts_with(channel + " in one more");
+      return s.recorded >= 0 && n.what.starts_with(channel + " in an event");
     });
     if (like == d.next.end())
       d.next.push_back({channel + " " + s.name, *size});
@@ -258,10 +258,13 @@ std::string decide_sentence(const Decision& decision) {
   const NextRecord& best = decision.next.front();
   if (best.expected > decision.now - 0.5)
     return fmt::format(
-        "No simulated measurement separates the candidates: after {}, {:.1f} of {:.0f} remain on average.",
+        "No simulated measurement separates the candidates: {} leaves {:.1f} of {:.0f} on average.",
         best.what, best.expected, decision.now);
-  return fmt::format("Next measurement: {} (of {:.0f} candidates, {:.1f} remain on average).", best.what,
-                     decision.now, best.expected);
+  if (fmt::format("{:.1f}", best.expected) == "1.0")
+    return fmt::format("Next measurement: {} would identify the effect ({:.0f} candidates → 1).", best.what,
+                       decision.now);
+  return fmt::format("Next measurement: {} ({:.0f} candidates → {:.1f} on average).", best.what, decision.now,
+                     best.expected);
 }
 
 }  // namespace swingbank::validate::hypothesis

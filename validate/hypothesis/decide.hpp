@@ -11,7 +11,7 @@ namespace swingbank::validate::hypothesis {
 
 /// A possible record, and the expected number of effects in the set after it.
 struct NextRecord {
-  std::string what;     ///< "field current in one more event like ev1"
+  std::string what;     ///< "field current in an event like ev1"
   double expected = 0;  ///< expected number of effects in the set
 };
 /// Possible measurements and the present size of the set.
@@ -28,8 +28,8 @@ struct Decision {
 Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vector<Explanation>& all,
                            const noise::WhitenedEvents& events, double prior_sd, int threads);
 
-/// Returns for example "Field current in one more event like ev1 would decide: set of 4 -> 1.2."; empty
-/// without competing hypotheses.
+/// Returns for example "Next measurement: field current in an event like ev1 would identify the effect (4
+/// candidates → 1)."; empty without competing hypotheses.
 std::string decide_sentence(const Decision& decision);
 
 }  // namespace swingbank::validate::hypothesis

@@ -245,7 +245,7 @@ void add_switches(const sim::plant::PlantUnderTest& tested, std::vector<Hypothes
 void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
   Hypothesis h;
   h.name = "speed-voltage";
-  h.what = "speed in the stator voltage (E″ = (1 + ω) ψ″)";
+  h.what = "speed term in the stator voltage equations (E″ = (1 + ω) ψ″)";
   h.side = Side::machine;
   h.plant = tested.plant;
   h.conventions = tested.conventions;

@@ -263,12 +263,14 @@ class Identifying {
         j.fit = base_model_.fit;
         j.fitted = false;
         if (other_side) {
-          j.why_not = fmt::format("an inferred {} explains too little",
+          j.why_not = fmt::format("not fitted: even an arbitrary {} reduces the residual too little",
                                   h.input() == InputKind::torque ? "torque" : "field voltage");
         } else if (leader) {
           j.behind = h.cost - leader->cost;
-          j.why_not = fmt::format("chi2 of its identification is higher by {:.0f} than with {}", j.behind,
-                                  leader->hypothesis.name);
+          j.why_not = fmt::format(
+              "not fitted: chi-square of its preliminary fit on the reduced plant ({} as input) is "
+              "higher by {:.0f} than that of {}",
+              h.input() == InputKind::torque ? "torque" : "field voltage", j.behind, leader->hypothesis.name);
         } else {
           j.gain = none_ - h.cost;
           j.why_not = too_small(j.gain);

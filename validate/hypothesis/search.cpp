@@ -232,7 +232,7 @@ double length(const BaseModel& base_model) {
 }
 
 std::string too_small(double gain) {
-  return fmt::format("predicted chi2 reduction {:.0f}: too small for a fit", gain);
+  return fmt::format("not fitted: predicted reduction of chi-square {:.0f} is too small", gain);
 }
 
 sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h) {

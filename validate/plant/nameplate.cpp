@@ -28,8 +28,8 @@ constexpr std::array kNameplateFields = {
     Field{"mw", "Rated active power", "MW", "rated active power of the unit", FieldKind::rating},
     Field{"power_factor", "Rated power factor", "", "rated power factor", FieldKind::rating},
     Field{"commissioned", "Commissioned", "", "date of commissioning", FieldKind::date},
-    Field{"recorded", "Recorded", "", "date of the records, the first if there are several", FieldKind::date,
-          FieldNeed::required},
+    Field{"recorded", "Date of recording", "", "date of the records, the first if there are several",
+          FieldKind::date, FieldNeed::required},
     Field{"tested", "Tested", "", "date of the last test of the equipment", FieldKind::date},
 };
 constexpr std::array kNameplateEquipmentFields = {

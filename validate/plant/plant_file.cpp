@@ -104,8 +104,8 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
   const bool power = model.conventions.mechanical_power;
   text += fmt::format(
       "[plant]\nname = {}\nbase_mva = {}  # machine base [MVA], of all per-unit values below\n"
-      "frequency_hz = {}\nconventions = \"{}\"  # the governor sets {}\nspeed_voltage = {}  # speed in the "
-      "stator voltage\n",
+      "frequency_hz = {}\nconventions = \"{}\"  # the governor sets {}\nspeed_voltage = {}  # speed term in "
+      "the stator voltage equations\n",
       in_quotes(model.name), number(model.plant.mva), number(model.conventions.frequency),
       power ? "psse" : "andes", power ? "power" : "torque", model.conventions.speed_voltage);
   if (model.bus > 0)

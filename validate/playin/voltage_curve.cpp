@@ -53,8 +53,14 @@ VoltageCurve::VoltageCurve(const record::Record& record, std::vector<Switching> 
   std::ranges::sort(switchings_, {}, &Switching::time);
   const double slack = kStampRounding * record.step();
   last_ = record.t.back();
-  std::vector<Segment> segments;
   Problems problems;
+  for (const Switching& s : switchings_)
+    if (s.time < record.t.front() - slack || s.time > last_ + slack)
+      problems.add(fmt::format("switching time {:g} s", s.time), record.name,
+                   fmt::format("it is outside the record, {:g} to {:g} s", record.t.front(), last_),
+                   "give a time inside it");
+  problems.raise();
+  std::vector<Segment> segments;
   std::size_t k = 0;
   for (std::size_t s = 0; s <= switchings_.size(); ++s) {
     const bool is_last = s == switchings_.size();

@@ -361,9 +361,9 @@ class CsvReader {
       raw.time_resolution = 1;  // whole milliseconds are rounded, too
     if (fraction_) add_fractions(time->values, raw);
     for (const auto& [word, count] : words_)
-      raw.about.notes.push_back(fmt::format("'{}' stands for {} {}, the first at {}:{}: taken for no value.",
-                                            word, count, count == 1 ? "number" : "numbers", name_,
-                                            word_at_.at(word)));
+      raw.about.notes.push_back(fmt::format("{} {} a number ('{}', {} {}:{}); treated as missing.", count,
+                                            count == 1 ? "cell is not" : "cells are not", word,
+                                            count == 1 ? "at" : "first at", name_, word_at_.at(word)));
   }
 
   /// Adds fractions in seconds, or in counts of a clock whose counts per second are inferred from its wraps.

@@ -6,10 +6,12 @@
 
 namespace swingbank::validate::report {
 
-std::string times_noise(double ratio) {
+std::string ratio_text(double ratio) {
   if (!std::isfinite(ratio)) return "–";
-  return ratio < 9.95 ? fmt::format("{:.1f} ×", ratio) : fmt::format("{:.0f} ×", ratio);
+  return ratio < 9.95 ? fmt::format("{:.1f}", ratio) : fmt::format("{:.0f}", ratio);
 }
+
+std::string times_noise(double ratio) { return ratio_text(ratio) + (std::isfinite(ratio) ? " ×" : ""); }
 
 std::string probability_text(double probability) {
   const double percent = 100 * probability;

@@ -4,6 +4,9 @@
 
 namespace swingbank::validate::report {
 
+/// Returns a ratio with one decimal below 10 and none above, "0.9" or "85"; "–" if not finite.
+std::string ratio_text(double ratio);
+
 /// Returns a multiple of the noise, "0.9 ×" or "85 ×"; "–" if not finite.
 std::string times_noise(double ratio);
 

@@ -254,15 +254,15 @@ void add_task(const Task& task, const std::string& stem, Report& to) {
   to.document.text(made_of(task));
   if (const auto makers = task.makers(); makers.size() > 1)
     to.document.note(fmt::format(
-        "These figures were made by different software or processors, so a small difference between "
-        "two of them need not be one of the methods: {}.",
+        "The results were computed by different software versions or processors, which may cause small differences: "
+        "{}.",
         fmt::join(makers, "; ")));
   to.document.add(method_table(task));
   to.picture(stem + "-methods.svg", method_picture(task),
              task.generators().empty()
                  ? "Mean squared error of each method."
-                 : "Mean squared error of each method: large, the mean; small, each generator "
-                   "left out.");
+                 : "Mean squared error of each method. Large markers: mean; small markers: each excluded "
+                   "generator.");
   for (const double level : task.levels())
     if (!task.generators().empty()) {
       to.document.add(generator_table(task, level));
@@ -271,9 +271,8 @@ void add_task(const Task& task, const std::string& stem, Report& to) {
   to.picture(stem + "-parameters.svg", parameter_picture(task),
              "Error of each parameter relative to its variance.");
   for (const double level : task.levels()) to.document.add(parameter_comparison(task, level));
-  to.picture(
-      stem + "-reliability.svg", reliability_picture(task),
-      "Coverage of the intervals: a point on the dashed line is an interval with the nominal coverage.");
+  to.picture(stem + "-reliability.svg", reliability_picture(task),
+             "Coverage of the intervals: a point on the dashed line is an interval with nominal coverage.");
   if (const Table several = several_table(task); !several.rows.empty()) to.document.add(several);
   to.document.add(effort_table(task));
 }
@@ -350,7 +349,7 @@ std::string remark(const std::string& table) {
         kThesisPppd, kThesisCnnOnPppdEvents);
   if (table == "VI")
     return fmt::format(
-        "Of its GRU the thesis says here only that it stopped at an MSE of {:g} in validation.",
+        "For its GRU the thesis states only the validation MSE at which the training stopped: {:g}.",
         kThesisGruTableVI);
   return {};
 }

@@ -32,12 +32,14 @@ Acceptance acceptance_of(const Preset& p, std::string name, std::string source) 
 
 const std::vector<Acceptance>& presets() {
   static const std::vector<Acceptance> all = {
-      acceptance_of(dtr_test, "dtr-test",
-                    "RTE, Documentation technique de référence, fiche I16, reference measured, as DyCoV 1.1 "
-                    "applies it"),
-      acceptance_of(dtr_simulation, "dtr-simulation",
-                    "RTE, Documentation technique de référence, fiche I16, reference simulated, as DyCoV 1.1 "
-                    "applies it"),
+      acceptance_of(
+          dtr_test, "dtr-test",
+          "French grid code (RTE DTR), data sheet I16, limits for comparison with measurements, as implemented "
+          "in DyCoV 1.1"),
+      acceptance_of(
+          dtr_simulation, "dtr-simulation",
+          "French grid code (RTE DTR), data sheet I16, limits for comparison with simulations, as implemented "
+          "in DyCoV 1.1"),
   };
   return all;
 }

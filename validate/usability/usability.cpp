@@ -199,8 +199,12 @@ Usability check_usability(const plant::PlantModel& model, const std::vector<Oper
   if (!all.not_checked.empty()) return all;
   const Plant plant = plant_for_studies(model.plant);
   const sim::Effect* regulator = regulator_of(plant);
-  all.step = regulator ? fmt::format("step of the reference of {} by {:+g} pu", regulator->name, kStudyStep)
-                       : fmt::format("step of the infinite bus's voltage by {:+g} %", -100 * kStudyStep);
+  all.step =
+      regulator
+          ? fmt::format("step of the reference of {} by {:+g} pu", regulator->name, kStudyStep)
+          : fmt::format(
+                "switching of a shunt reactor at the plant's bus that reduces the Thévenin voltage and reactance of the grid by {:g} %",
+                100 * kStudyStep);
   all.at.resize(states.size());
   in_parallel(
       states.size(), [&](std::size_t k) { all.at[k] = check_at(model, plant, states[k]); }, [](int) {});

@@ -16,7 +16,7 @@ constexpr double kStudyReactance = 0.2;  ///< between the plant and the infinite
 constexpr double kStudyDuration = 10;    ///< length of each run [s]
 constexpr double kSampleError =
     1e-7;                            ///< error of a simulated sample, from all steps [pu on the plant's MVA]
-constexpr double kStudyStep = 0.01;  ///< step of the reference, or of the infinite bus's voltage [pu]
+constexpr double kStudyStep = 0.01;  ///< step of the reference, or of the Thévenin voltage [pu]
 
 /// Operating point before one event.
 struct OperatingState {
@@ -53,14 +53,14 @@ struct Usability {
 
 /// Simulates the plant from each operating point, without a disturbance and with a small step, by the
 /// reference integrator. The step is that of the voltage reference if the plant has an exciter or a plant
-/// control, else one of the infinite bus's voltage. Instruments and changed references, which belong to an
-/// event, are left out. A part of a plant (component) is not checked.
+/// control, else a shunt reactor. Instrument models and reference changes of the records are not simulated. A
+/// part of a plant (component) is not checked.
 Usability check_usability(const plant::PlantModel& model, const std::vector<OperatingState>& states);
 
 /// Returns the least damped oscillation of uniformly sampled signals [signal][sample] of one system, by the
 /// matrix pencil method (Y. Hua, T. K. Sarkar, IEEE Trans. ASSP 38 (1990) 814). `rate`: samples per second;
 /// `accuracy`: error of a sample. The amplitude has the signals' unit. An oscillation counts if its amplitude
-/// exceeds that error, and its energy that of what the decomposition leaves. Empty if there is none.
+/// exceeds that error, and its energy that of the residual of the decomposition. Empty if there is none.
 std::optional<Oscillation> least_damped_oscillation(const std::vector<std::vector<double>>& signals,
                                                     double rate, double accuracy);
 

@@ -139,7 +139,7 @@ TEST(Calibrate, FindsTheTruthAndExplainsTheUnseenEvent) {
   // The error of Efd and Ifd is 7 times their noise, but slow; after whitening chi2 per value is 3.7.
   EXPECT_GT(c.events[3].before, 3 * c.events[3].after);
   EXPECT_LT(parameter(c, "EMIN").fit.decided, 0.1);  // Efd never reaches it
-  EXPECT_TRUE(std::ranges::any_of(c.blurs, [&](const Blur& b) {
+  EXPECT_TRUE(std::ranges::any_of(c.unidentified, [&](const UnidentifiedCombination& b) {
     return c.parameters[static_cast<std::size_t>(b.members.front().parameter)].fit.name == "EMIN" && b.alone;
   }));
   const auto json = calibration_json(c);

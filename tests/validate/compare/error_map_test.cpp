@@ -196,10 +196,13 @@ TEST(MapSentenceTest, NamesTheWindowAndBandOfTheLargestError) {
   set_bounds(maps, 0.02);
   const std::string text = map_sentence(
       {{"e1", "P", "MW", 1, &w, &a}, {"e2", "P", "MW", 1, &w, &b}, {"e1", "Q", "Mvar", 1, &w, &c}});
-  EXPECT_TRUE(
-      text.starts_with("P is furthest above its noise bound in the window “> 5 s after” at 0.1–0.8 Hz: "))
+  EXPECT_TRUE(text.starts_with(
+      "P: largest exceedance of a noise limit in the window > 5 s after the last switching, band 0.1–0.8 Hz: "
+      "normalised RMS "))
       << text;
-  EXPECT_TRUE(text.ends_with(" noise, in 2 of 2 events. Q is within its noise everywhere.")) << text;
+  EXPECT_TRUE(text.ends_with(
+      "This bin exceeds its limit in 2 of 2 events. Q: all bins are within their noise limits."))
+      << text;
 }
 
 }  // namespace

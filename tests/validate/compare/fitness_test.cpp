@@ -83,7 +83,10 @@ TEST(Fitness, MissingResponse_FailsByItsMovement_WhenEveryLimitOfMvaHolds) {
   EXPECT_NEAR(f.movements[0].error, 100, 1e-9);
   EXPECT_NEAR(f.movements[0].share, 0, 1e-9);
   EXPECT_THAT(f.sentence, HasSubstr("no (1 of 19 errors"));
-  EXPECT_THAT(f.sentence, HasSubstr("(limit 25 %); the modelled movement is 0 % of"));
+  EXPECT_THAT(
+      f.sentence,
+      HasSubstr(
+          "limit 25 %). Regression coefficient of the modelled on the measured deviation: 0.00 (1: equal)"));
   const Fitness most = judge_fitness({governor_event(0.8)}, 50, plain_limits());
   EXPECT_TRUE(most.fit) << most.sentence;
   EXPECT_NEAR(most.movements[0].error, 20, 1e-9);

@@ -211,9 +211,9 @@ TEST(CompareReportTest, MapCellsShowPercentOfMvaAndNoise) {
   const ChannelComparison& q = events[0].channels[1];
   const TimeFrequencyBin& bin = q.map.rows[2].all;
   const std::string expected =
-      fmt::format("RMS {:.3g} Mvar, {:.2g} % of {:.4g} MVA; {} noise, bound {}", bin.rms * q.scale,
-                  100 * bin.rms / q.size, q.size * q.scale, report::times_noise(bin.normalised),
-                  report::times_noise(bin.bound));
+      fmt::format("RMS {:.3g} Mvar, {:.2g} % of {:.4g} MVA; normalised RMS {} (limit {})", bin.rms * q.scale,
+                  100 * bin.rms / q.size, q.size * q.scale, report::ratio_text(bin.normalised),
+                  report::ratio_text(bin.bound));
   EXPECT_EQ(std::ranges::count_if(map.rows, [&](const auto& row) { return row[3].hint.ends_with(expected); }),
             1);
 }

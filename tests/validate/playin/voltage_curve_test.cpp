@@ -92,10 +92,11 @@ TEST(VoltageCurveTest, RefusesSegmentsWithoutSamples) {
                 VoltageCurve(stepped(), {{.time = 1.01}, {.time = 1.02}});
               }),
               ElementsAre(HasSubstr("no sample between")));
-  EXPECT_THAT(test::messages([] { VoltageCurve(stepped(), {{.time = -1.0}}); }),
-              ElementsAre(HasSubstr("no sample between")));
+  EXPECT_THAT(
+      test::messages([] { VoltageCurve(stepped(), {{.time = -1.0}}); }),
+      ElementsAre(AllOf(HasSubstr("switching time -1 s"), HasSubstr("outside the record, 0 to 3 s"))));
   EXPECT_THAT(test::messages([] { VoltageCurve(stepped(), {{.time = 3.5}}); }),
-              ElementsAre(HasSubstr("no sample between")));
+              ElementsAre(AllOf(HasSubstr("switching time 3.5 s"), HasSubstr("give a time inside it"))));
 }
 
 }  // namespace

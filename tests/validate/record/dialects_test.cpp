@@ -110,7 +110,7 @@ TEST(RecordDialectTest, InterpolatesMissingMillisecondStamp) {
   EXPECT_EQ(std::ranges::count(r.lost, 1), 1);
   EXPECT_EQ(r.lost[31], 1);
   EXPECT_NEAR(r.V[31], 1.02, 1e-9);
-  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("1 of 61 frames are missing"), HasSubstr("not compared"))));
+  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("1 of 61 samples is missing"), HasSubstr("not compared"))));
 }
 TEST(RecordDialectTest, OneTerminalOfSeveral) {
   const auto text = table("t_s,G1.V_pu,G1.theta_deg,G1.P_pu,G1.Q_pu,G7.V_pu,G7.theta_deg,G7.P_pu,G7.Q_pu\n",

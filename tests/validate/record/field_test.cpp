@@ -210,7 +210,7 @@ TEST(LostFramesTest, AreInterpolatedAndMarked) {
     EXPECT_NEAR(r.V[k], 1.02 + 1e-3 * std::sin(r.t[k]), 1e-6);
     EXPECT_NEAR(r.theta[k], 0.2 * std::cos(r.t[k]), 1e-6);
   }
-  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("6 of 900 frames"), HasSubstr("0.2 s"))));
+  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("6 of 900 samples"), HasSubstr("0.2 s"))));
 }
 // A swing of a machine with an instrument's noise: the interpolated values are as accurate as samples. A
 // straight line across the step next to the gap would be off by 2e-3.
@@ -258,7 +258,7 @@ TEST(LostFramesTest, IncludeRowsWithoutValues) {
   EXPECT_EQ(std::ranges::count(r.lost, 1), 3);
   EXPECT_NEAR(r.P[600], 0.4, 1e-9);
   EXPECT_EQ(r.V[600], 1.02) << "P alone is missing: the voltage is as recorded";
-  EXPECT_THAT(r.notes, ElementsAre(HasSubstr("in 2 places"), HasSubstr("P_pu has no value in 1 of 900")));
+  EXPECT_THAT(r.notes, ElementsAre(HasSubstr("2 gaps"), HasSubstr("P_pu has no value in 1 of 900")));
 }
 TEST(LostFramesTest, KeepVoltage_WhenAnotherQuantityIsMissing) {
   const auto with = [](const std::string& q, int first, int count) {
@@ -276,7 +276,7 @@ TEST(LostFramesTest, KeepVoltage_WhenAnotherQuantityIsMissing) {
       EXPECT_NEAR(r.Q[k], 0.1, 1e-9);
     }
     EXPECT_EQ(std::ranges::count(r.lost, 1), 3);
-    EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("Q_pu has no value in 3 of 900 frames"),
+    EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("Q_pu has no value in 3 of 900 samples"),
                                            HasSubstr("not compared"))));
   }
   const Record ends = parse_record(with("", 0, 2), "r.csv", kTestBase);
@@ -289,7 +289,7 @@ TEST(LostFramesTest, KeepVoltage_WhenAnotherQuantityIsMissing) {
     return fmt::format("{:.7f},1.02,{},0.4,0.1", k / 30.0, k == 300 ? "" : "60.0");
   });
   EXPECT_THAT(parse_record(without_angle, "r.csv", kTestBase).notes,
-              ::testing::Contains(HasSubstr("frames are missing")));
+              ::testing::Contains(HasSubstr("1 of 900 samples is missing")));
 }
 TEST(LostFramesTest, LongerGapsAreReported) {
   const auto text =
@@ -312,7 +312,7 @@ TEST(LostFramesTest, StepWithinTheGapIsReported) {
   });
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_TRUE(r.V[100] == 1.02 || r.V[100] == 0.7);
-  EXPECT_THAT(r.notes, Contains(HasSubstr("has a step where frames are missing")));
+  EXPECT_THAT(r.notes, Contains(HasSubstr("has a step in a gap")));
 }
 TEST(StampTest, AcceptsTruncatedLastLine) {
   const auto text = table(kHeader, 90, [](int k) { return row(k, k / 30.0); }) + "3.0000000,1.02";

@@ -116,7 +116,7 @@ TEST(MissingWordTest, MarksLostFrames) {
   const auto text = frames(
       [](int k) { return k == 150 ? std::string("5.0,Perdu,0.1,0.4,0.1\n") : frame(k, k / 30.0) + "\n"; });
   EXPECT_THAT(parse_record(text, "r.csv", kTestBase).notes,
-              Contains(AllOf(HasSubstr("'Perdu'"), HasSubstr("r.csv:152"), HasSubstr("no value"))));
+              Contains(AllOf(HasSubstr("'Perdu'"), HasSubstr("r.csv:152"), HasSubstr("treated as missing"))));
 }
 TEST(HeadingTest, DecidesTheSeparator) {
   const std::string table = frames([](int k) { return frame(k, k / 30.0) + "\n"; });
@@ -180,7 +180,7 @@ TEST(OtherFileTest, NamesCodes) {
                      return k == 150 ? std::string("5.0,1.02,0.1,1e308,0.1\n") : frame(k, k / 30.0) + "\n";
                    }),
                    "r.csv", kTestBase);
-  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("P_pu has no value in 1 of 300 frames"),
+  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("P_pu has no value in 1 of 300 samples"),
                                       HasSubstr("a code such as"))));
 }
 

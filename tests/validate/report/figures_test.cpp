@@ -16,6 +16,8 @@ TEST(Figures, ProbabilityNeverStatesCertainty) {
 }
 
 TEST(Figures, MultipleOfNoiseHasTwoDigits) {
+  EXPECT_EQ(ratio_text(0.94), "0.9");
+  EXPECT_EQ(ratio_text(1339.2), "1339");
   EXPECT_EQ(times_noise(0.94), "0.9 ×");
   EXPECT_EQ(times_noise(9.96), "10 ×");
   EXPECT_EQ(times_noise(84.7), "85 ×");

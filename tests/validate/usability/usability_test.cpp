@@ -70,7 +70,9 @@ TEST(Usability, ClassicalMachineSwingsAsTheSwingEquation) {
   ASSERT_EQ(u.at.size(), 1U);
   EXPECT_TRUE(u.usable());
   EXPECT_EQ(u.verdict(), "Initialises; the step response is damped");
-  EXPECT_EQ(u.step, "step of the infinite bus's voltage by -1 %");
+  EXPECT_EQ(
+      u.step,
+      "switching of a shunt reactor at the plant's bus that reduces the Thévenin voltage and reactance of the grid by 1 %");
   EXPECT_LT(std::max(u.at[0].drift_P, u.at[0].drift_Q), 1e-4);
   ASSERT_TRUE(u.at[0].oscillation);
   const double P = at.P / model.plant.mva;

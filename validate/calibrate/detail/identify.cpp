@@ -101,24 +101,25 @@ noise::EventNoise inner_noise() {
 
 }  // namespace
 
-std::vector<Blur> find_blurs(const Eigen::MatrixXd& information, const Eigen::VectorXd& unit) {
+std::vector<UnidentifiedCombination> find_unidentified(const Eigen::MatrixXd& information,
+                                                       const Eigen::VectorXd& unit) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
-  std::vector<Blur> blurs;
+  std::vector<UnidentifiedCombination> unidentified;
   for (Eigen::Index k = 0; k < information.rows(); ++k) {
     const double value = std::max(0.0, eigen.eigenvalues()[k]), decided = value / (1 + value);
     if (decided >= thresholds::parameters.identified) break;  // eigenvalues increase
     const Eigen::VectorXd v = eigen.eigenvectors().col(k);
-    Blur blur;
-    blur.decided = decided;
+    UnidentifiedCombination combination;
+    combination.decided = decided;
     for (Eigen::Index i = 0; i < v.size(); ++i)
       if (std::abs(v[i]) >= thresholds::parameters.member)
-        blur.members.push_back({static_cast<int>(i), v[i] * unit[i] / std::sqrt(1 + value)});
-    std::ranges::sort(blur.members, std::ranges::greater{},
-                      [&](const Blur::Member& m) { return std::abs(v[m.parameter]); });
-    blur.alone = blur.members.size() == 1;
-    blurs.push_back(blur);
+        combination.members.push_back({static_cast<int>(i), v[i] * unit[i] / std::sqrt(1 + value)});
+    std::ranges::sort(combination.members, std::ranges::greater{},
+                      [&](const UnidentifiedCombination::Member& m) { return std::abs(v[m.parameter]); });
+    combination.alone = combination.members.size() == 1;
+    unidentified.push_back(combination);
   }
-  return blurs;
+  return unidentified;
 }
 
 std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,

@@ -204,19 +204,28 @@ void name_best(const user_model_search::Unexplained& judged, Diagnosis& d) {
 
 }  // namespace
 
+std::string tempering_note() {
+  return fmt::format(
+      "Probabilities are tempered: p ∝ exp(Δ/{:g}), where Δ is the difference of 2 ln(Bayes factor), less the evidence "
+      "required of each effect. The divisor {:g} allows for incomplete fits and an incomplete noise model (decision "
+      "41).",
+      2 * thresholds::posterior.scale, thresholds::posterior.scale.value);
+}
+
 std::string first_sentence(const Diagnosis& d, double adequate) {
   const double slow = noise::slow_remainder(d.base.events, d.events);
   if (thresholds::judged_by_remainder(left_by(d, 0, 0), adequate).adequate)
-    return fmt::format("So far: with refitted parameters the residual is noise (reduced chi-square {:.3f}).",
-                       d.base.reduced_chi2());
+    return fmt::format(
+        "Preliminary: with refitted parameters the residual is noise (reduced chi-square {:.3f}).",
+        d.base.reduced_chi2());
   return fmt::format(
-      "So far: something is missing; reduced chi-square {:.2f} with refitted parameters, slow "
-      "drift {:.3g} standard deviations above noise.{}",
+      "Preliminary: the model is incomplete. Reduced chi-square after the first refit: {:.2f} (noise: 1). Slow "
+      "drift: {:.3g} standard deviations above noise.{}",
       d.base.reduced_chi2(), slow, line_sentence(d));
 }
 
 std::string wrong_sentence(const Diagnosis& d) {
-  return "So far: " + calibrate::wrong_sentence(*d.wrong, thresholds::adequacy.reduced_chi2);
+  return "Preliminary: " + calibrate::wrong_sentence(*d.wrong, thresholds::adequacy.reduced_chi2);
 }
 
 std::optional<calibrate::WrongParameters> wrong_parameters(const Diagnosis& d) {
@@ -232,11 +241,11 @@ std::string side_sentence(const Diagnosis& d) {
   const bool explains = std::max(d.torque.evidence, d.field.evidence) > thresholds::evidence.accepted;
   const bool both = std::max(t, f) <= thresholds::user_models.as_much * std::min(t, f);
   return fmt::format(
-      "So far: {} (reduced chi-square {:.2f} if mechanical power may vary freely, {:.2f} if field voltage may "
-      "vary freely).",
-      !explains ? "neither mechanical power nor field voltage explains the residual"
-      : both    ? "mechanical power and field voltage explain the residual about equally well"
-      : t < f   ? "mechanical power explains more of the residual"
+      "Preliminary: {}. Reduced chi-square with an unknown mechanical torque: {:.2f}; with an unknown field voltage: "
+      "{:.2f}.",
+      !explains ? "neither mechanical torque nor field voltage explains the residual"
+      : both    ? "mechanical torque and field voltage explain the residual about equally well"
+      : t < f   ? "mechanical torque explains more of the residual"
                 : "field voltage explains more of the residual",
       t, f);
 }
@@ -250,8 +259,8 @@ std::string leading_sentence(const Diagnosis& d) {
                            hypothesis::full_name(j.hypothesis), j.gain);
       ++named;
     }
-  return names.empty() ? "So far: no listed effect improves the fit."
-                       : "So far, not yet judged on held-out events: " + names + ".";
+  return names.empty() ? "Preliminary: no listed effect improves the fit."
+                       : "Preliminary, not yet tested on held-out events: " + names + ".";
 }
 
 std::string_view verdict_name(Verdict verdict) {

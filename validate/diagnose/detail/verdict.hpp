@@ -13,6 +13,9 @@ void settle(const user_model_search::Unexplained& judged, const event::Progress&
 /// Sets the verdict of an interrupted diagnosis: completed fits are kept, and no hypothesis is judged.
 void interrupt(Diagnosis& d);
 
+/// Returns how evidence is converted to the probabilities of the explanations.
+std::string tempering_note();
+
 /// Returns the first preliminary result: the residual of the refitted model.
 std::string first_sentence(const Diagnosis& d, double adequate);
 /// Returns the small set of wrong parameters that explains the records.

@@ -1,5 +1,5 @@
 #pragma once
-// Steps of an angle that was integrated from a frequency, which shows them late, smoothed or not at all.
+// Phase jumps at switching times, reconstructed for voltage angles integrated from frequency.
 #include "sim/plant/under_test.hpp"
 #include "validate/event/event.hpp"
 

@@ -122,14 +122,14 @@ bool gaps_are_short(EvenRows& rows, Record& about) {
   }
   if (cut > 0)
     about.notes.push_back(
-        fmt::format("{} samples at the record's ends are without values and were left off.", cut));
+        fmt::format("{} samples without values at the ends of the record were removed.", cut));
   if (gaps.empty()) return true;
   std::size_t all = 0;
   for (const Gap& g : gaps) all += g.samples();
   about.notes.push_back(fmt::format(
-      "{} of {} frames are missing, in {} {}, the longest of {:.3g} s at t = {:.4g} s: the voltage is bridged there, "
-      "and these samples are not compared.",
-      all, rows.place.size(), gaps.size(), gaps.size() == 1 ? "place" : "places",
+      "{} of {} samples {} missing ({} {}; longest {:.3g} s, at t = {:.4g} s). The voltage is interpolated there; P and Q "
+      "are not compared.",
+      all, rows.place.size(), all == 1 ? "is" : "are", gaps.size(), gaps.size() == 1 ? "gap" : "gaps",
       static_cast<double>(longest.samples()) * h, rows.t[std::min(longest.first, rows.t.size() - 1)]));
   return true;
 }
@@ -139,10 +139,10 @@ void bridge(Record& r) {
     const auto neighbours = r.V.empty() ? std::vector<std::size_t>() : beside(r, gap);
     const bool stepped = !r.V.empty() && steps_within(r, gap, neighbours);
     if (stepped)
-      r.notes.push_back(fmt::format(
-          "The voltage has a step where frames are missing, between t = {:.4f} and {:.4f} s: this "
-          "is the uncertainty of the switching time.",
-          r.t[gap.first - 1], r.t[gap.last + 1]));
+      r.notes.push_back(
+          fmt::format("The voltage has a step in a gap, between t = {:.4f} and {:.4f} s; the gap is the "
+                      "uncertainty of the switching time.",
+                      r.t[gap.first - 1], r.t[gap.last + 1]));
     const bool bends = !stepped && neighbours.size() >= kMinAcross;
     for (auto* y : {&r.V, &r.theta, &r.f, &r.speed, &r.P, &r.Q}) {
       if (y->empty()) continue;

@@ -233,7 +233,7 @@ std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r)
     if (const auto filled = fill_unmeasured(values, rows); !filled.empty()) {
       const bool compared = q != Quantity::f;
       r.notes.push_back(fmt::format(
-          "{} has no value in {} of {} frames (empty, a word or a code such as 9999 or 1e308), the first at t = {:.4g} s{}.",
+          "{} has no value in {} of {} samples (empty, a word or a code such as 9999 or 1e308), the first at t = {:.4g} s{}.",
           column.name, filled.size(), values.size(), rows.t[filled.front()],
           compared ? ": their voltage is used, and they are not compared" : ""));
       if (compared) unmeasured.resize(values.size(), 0);

@@ -152,11 +152,11 @@ void lose_zero_frames(RawRecord& raw, SampleFaults& faults) {
     if (count > 0)
       raw.about.notes.push_back(
           fmt::format("{} {} exactly zero in voltage, power and angle, the first at {}: {}.", count,
-                      count == 1 ? "frame is" : "frames are", faults.where(row), what));
+                      count == 1 ? "sample is" : "samples are", faults.where(row), what));
   };
-  note(lost, first, "no measurements, taken for lost frames");
+  note(lost, first, "these samples are treated as missing");
   note(kept, first_kept,
-       "V, P and Q differ before and after, so they were taken for a fault at the terminals");
+       "V, P and Q differ before and after, so these samples are treated as a fault at the terminals");
 }
 
 }  // namespace swingbank::validate::record

@@ -17,16 +17,18 @@ struct Wave {
   const ComtradeChannel* channel;
   bool voltage;
   Phase phase;
-  std::string circuit;  ///< the channel's component, else the rest of its name beside quantity and phase
+  std::string circuit;  ///< circuit component of the channel (COMTRADE ccbm); if empty, the channel name
+                        ///< without quantity and phase
   double scale;         ///< factor to kV or kA
 };
 /// Returns the channel as a voltage or current with known unit and phase.
 std::optional<Wave> wave_of(const ComtradeChannel& channel);
 
-/// Three waveforms of a positive sequence; one may be missing, as the negative sum of the other two.
+/// Three phase waveforms from which the positive-sequence component is computed. One may be absent; it is
+/// then minus the sum of the other two (no zero-sequence component).
 struct WaveSet {
   std::array<const Wave*, 3> waves{};  ///< at most one is null
-  bool between = false;                ///< voltages ab, bc, ca
+  bool between = false;                ///< line-to-line voltages (ab, bc, ca)
   std::string circuit;
 };
 

@@ -86,7 +86,7 @@ std::string bars_svg(const Bars& b) {
                     !bar.shown.empty() ? escape(bar.shown)
                     : std::isfinite(bar.value)
                         ? fmt::format("{:.3g}{}", bar.value, b.unit.empty() ? "" : " " + escape(b.unit))
-                        : "missing");
+                        : "not finite");
     y += line;
   }
   if (b.reference > 0) {

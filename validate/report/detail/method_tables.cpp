@@ -80,6 +80,13 @@ Cell best_network(const Task& task, double noise) {
   return cell;
 }
 
+/// Returns whether the thesis has a figure of this method in the table.
+bool has_thesis_figure(const Task& task, const std::string& method) {
+  return method == "curve-fit" || std::ranges::any_of(kThesisCells, [&](const ThesisCell& cell) {
+           return cell.table == task.table && cell.network == method;
+         });
+}
+
 bool of_thesis(const Task& task) {
   return std::ranges::find(kThesisTables, task.table, &ThesisTable::number) != kThesisTables.end();
 }
@@ -139,7 +146,7 @@ Table method_table(const Task& task) {
   const auto levels = task.levels();
   for (const double level : levels) table.header.push_back(level_name(level));
   for (const auto& method : with_thesis(task)) {
-    const auto thesis = method == "floor" ? std::nullopt : thesis_mean(task, method);
+    const auto thesis = has_thesis_figure(task, method) ? thesis_mean(task, method) : std::nullopt;
     std::vector<Cell> row = {method_name(method), thesis ? shown(*thesis) : "–"};
     const bool any = std::ranges::any_of(task.runs, [&](const RunResult& r) { return r.network == method; });
     for (const double level : levels)
@@ -154,7 +161,7 @@ Table method_table(const Task& task) {
 
 Table generator_table(const Task& task, double noise) {
   const auto methods = methods_at(task, noise);
-  Table table{fmt::format("Each generator left out, {}.", level_name(noise)),
+  Table table{fmt::format("Each excluded generator, {}.", level_name(noise)),
               {"generator", "thesis", "predict-the-mean"},
               {}};
   for (const auto& m : methods) table.header.push_back(method_name(m));
@@ -181,9 +188,10 @@ Table generator_table(const Task& task, double noise) {
 Table unseen_table(const Task& task, double noise) {
   constexpr double kAim = 1.5;
   Table table{
-      fmt::format("Unseen over seen, {}: MSE on the generator left out over that on validation rows of "
-                  "generators that trained. At most {:g} is the aim.",
-                  level_name(noise), kAim),
+      fmt::format(
+          "Generalisation ratio, {}: MSE on the excluded generator divided by MSE on validation rows of the "
+          "training generators (target ≤ {:g}).",
+          level_name(noise), kAim),
       {"generator"},
       {}};
   std::vector<std::string> trained;
@@ -237,7 +245,7 @@ Table several_table(const Task& task) {
   Table table{
       "Several records of one plant: raw MSE of the plants with three test records or more, "
       "from the first of them, from three, from up to twelve; by the mean of the records' "
-      "estimates and, where the method gives posterior distributions, by their product.",
+      "estimates and, where the method gives posteriors, by their product.",
       {"method", "noise", "plants", "records", "mean", "product"},
       {}};
   for (const auto& method : task.methods())
@@ -262,7 +270,7 @@ Table several_table(const Task& task) {
 }
 
 Table effort_table(const Task& task) {
-  Table table{"Cost of the results: rows and epochs of a run, processor time of all runs.",
+  Table table{"Computing cost: rows and epochs of a run, processor time of all runs.",
               {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]"},
               {}};
   for (const auto& method : task.methods())
@@ -289,7 +297,7 @@ Table effort_table(const Task& task) {
 }
 
 std::string against_thesis(const Task& task) {
-  std::vector<std::string> counts;
+  std::vector<std::string> lower, higher;
   for (const auto& method : task.methods()) {
     std::set<int> judged, better;
     for (const auto* r : runs_of(task, {method, 0.0})) {
@@ -300,12 +308,20 @@ std::string against_thesis(const Task& task) {
       if (figure->mse < cell->mse) better.insert(r->generator);
     }
     if (judged.empty()) continue;
-    counts.push_back(
-        *judged.begin() > 0
-            ? fmt::format("{} for {} of {} generators", method_name(method), better.size(), judged.size())
-            : fmt::format("{} {}", method_name(method), better.empty() ? "no" : "yes"));
+    if (better.empty())
+      higher.push_back(method_name(method));
+    else
+      lower.push_back(
+          method_name(method) +
+          (*judged.begin() > 0 ? fmt::format(" at {} of {} generators", better.size(), judged.size()) : ""));
   }
-  return counts.empty() ? "" : fmt::format("Without noise, below the thesis: {}.", fmt::join(counts, "; "));
+  std::string text;
+  if (!lower.empty())
+    text = fmt::format("MSE lower than in the thesis (noise-free): {}.", fmt::join(lower, ", "));
+  if (!higher.empty())
+    text += fmt::format("{}: {}.", lower.empty() ? "MSE higher than in the thesis (noise-free)" : " Higher",
+                        fmt::join(higher, ", "));
+  return text;
 }
 
 }  // namespace swingbank::validate::report

@@ -149,12 +149,11 @@ std::vector<ScalingSeries> scaling_series(const std::vector<RunResult>& results)
 
 Table scaling_table(const std::vector<ScalingSeries>& series) {
   Table table{
-      "The law MSE ∝ size^exponent, fitted to the logarithms, with intervals of 95 %; values "
-      "beyond the largest size are extrapolated. Core-hours are of one network with the epochs "
-      "and inputs that it has here, at the largest size's rate.",
-      {"", "sizes", "training rows", "exponent of the rows", "exponent of the time",
-       "MSE at the thesis's training rows", "core-hours for that", "the thesis's MSE", "rows until then",
-       "core-hours for that"},
+      "Power law MSE ∝ N^b (N training rows), log-log regression, 95 % confidence intervals; values beyond the largest "
+      "N are extrapolated. Core-hours: one network, at the time per row measured at the largest N.",
+      {"", "sizes", "training rows", "exponent b of the rows", "exponent of the time",
+       "MSE at the thesis's training rows", "core-hours for that", "the thesis's MSE",
+       "training rows required", "core-hours for that"},
       {}};
   std::vector<std::vector<Cell>> columns;
   for (const auto& s : series) {
