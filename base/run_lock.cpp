@@ -81,10 +81,10 @@ bool RunLock::try_lock() {
   if (errno == EWOULDBLOCK) return false;
   const std::string why = std::strerror(errno);
   withdraw();
-  throw InputError(
-      {"cannot lock the folder", file_.string(),
-       "the file system does not support flock: " + why + "; two runs could write to the folder at the same time",
-       "use another disk or mount with lock support (Lustre: -o flock)"});
+  throw InputError({"cannot lock the folder", file_.string(),
+                    "the file system does not support flock: " + why +
+                        "; two runs could write to the folder at the same time",
+                    "use another disk or mount with lock support (Lustre: -o flock)"});
 }
 
 /// Returns whether the locked file still has this name. Another holder may have removed it between open and
@@ -102,7 +102,8 @@ void RunLock::refuse() const {
 
 /// Writes the holder into the file. Ignores errors such as a full disk, because the text is only informative.
 void RunLock::write_owner() const {
-  const std::string owner = this_process() + (kind_ == Kind::shared ? " or another part of the dataset" : "") + "\n";
+  const std::string owner =
+      this_process() + (kind_ == Kind::shared ? " or another part of the dataset" : "") + "\n";
   if (::ftruncate(fd_, 0) == 0 && ::pwrite(fd_, owner.data(), owner.size(), 0) < 0) return;
 }
 

@@ -75,7 +75,8 @@ void require_seal(Input& in, std::uint64_t length, const SealedKind& kind) {
   std::string magic(std::strlen(kind.magic), '\0');
   if (length < magic.size()) throw Unusable{"the file is truncated"};
   in.get(magic.data(), magic.size());
-  if (magic != kind.magic) throw Unusable{"it is not a " + std::string(kind.what) + " (wrong file signature)"};
+  if (magic != kind.magic)
+    throw Unusable{"it is not a " + std::string(kind.what) + " (wrong file signature)"};
   in.rewind();
   Hash hash;
   std::uint64_t seal = 0;

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Writes into each module's README.md what the sources say of themselves.
+# Writes the tables of dependencies and files into each module's README.md.
 #   bash docs/readme_tables.sh [--check]
 #     --check  changes nothing; exits with 1 and names each README that is out of date
-# Between `<!-- uses -->` and `<!-- end of uses -->` stand the modules that the module names in its CMakeLists.txt. Between
-# `<!-- files -->` and `<!-- end of files -->` stands one row per file: each header, and each source without a header of
-# its name. A row holds the first sentence of the file's head comment, or an effect's name and title. The order of rows
-# is kept, because it is the order in which data meets the files; a new file comes last, a vanished one is dropped.
+# Between `<!-- uses -->` and `<!-- end of uses -->`: the modules that the module names in its CMakeLists.txt. Between
+# `<!-- files -->` and `<!-- end of files -->`: one row per file, for each header and each source without a header of its
+# name. A row holds the first sentence of the file's head comment, or an effect's name and title. The order of rows
+# is kept, because it is the order of the data flow; a new file comes last, and a deleted one is removed.
 # shellcheck disable=SC2016 # backticks are Markdown here
 set -euo pipefail
 shopt -s nullglob
@@ -19,7 +19,7 @@ esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# Each line of a CMakeLists.txt that makes a module: its words, in one line.
+# The words of each swingbank_module() call of a CMakeLists.txt, in one line.
 awk 'FNR == 1 { text = "" }
   /^swingbank_module\(/ { text = " " }
   text != "" { sub(/#.*/, ""); text = text " " $0 }
@@ -38,7 +38,7 @@ uses() {
         if ($i ~ /^(USES|INSIDE|LINK|SOURCES|KIND)$/) key = $i
         else if (key == "USES") public = public (public ? ", " : "") link($i)
         else if (key == "INSIDE") inside = inside (inside ? ", " : "") link($i)
-      print "May use: " (public ? public : "no other module") "." (inside ? " Its sources alone also use: " inside "." : "")
+      print "Public dependencies: " (public ? public : "none") "." (inside ? " Private dependencies: " inside "." : "")
     }' "$work/modules"
 }
 
@@ -52,7 +52,7 @@ files() {
   done
 }
 
-# says: behind each path on its input a tab, and name and title of an effect, else the first sentence of the head comment.
+# says: after each path on its input a tab, and name and title of an effect, else the first sentence of the head comment.
 # A full stop ends it unless it stands in parentheses or behind an initial.
 says() {
   awk '
@@ -110,7 +110,7 @@ table() {
   local name file said
   files "$1" >"$work/there"
   sed -n '/^<!-- files -->$/,/^<!-- end of files -->$/s/^| `\([^`]*\)` |.*/\1/p' "$1/README.md" >"$work/listed"
-  printf '%s\n' '| file | what |' '|---|---|'
+  printf '%s\n' '| file | content |' '|---|---|'
   { grep -Fxf "$work/there" "$work/listed" || true; grep -vFxf "$work/listed" "$work/there" || true; } |
     while read -r name; do
       file=$1/$name.hpp
@@ -154,7 +154,7 @@ while read -r module _; do
   written "$module" >"$work/README.md"
   if cmp -s "$work/README.md" "$readme"; then continue; fi
   if ((check)); then
-    echo "out of date at $readme (the sources say something else of themselves): run bash docs/readme_tables.sh" >&2
+    echo "out of date at $readme (its dependencies or the head comments of its files have changed): run bash docs/readme_tables.sh" >&2
     failed=1
   else
     cp "$work/README.md" "$readme"

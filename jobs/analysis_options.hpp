@@ -60,7 +60,8 @@ struct AnalysisOptions {
     keep(line.add("--jump-threshold", step_threshold, "smallest voltage step detected as a switching [pu]")
              .shows_default()
              .positive());
-    keep(line.add("--pre-event", pre_event, "length of the steady-state window at the start of records without switching [s]")
+    keep(line.add("--pre-event", pre_event,
+                  "length of the steady-state window at the start of records without switching [s]")
              .shows_default()
              .positive());
     line.group("Output");

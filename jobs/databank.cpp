@@ -32,8 +32,8 @@ void report(const mpi::draw::Databank& bank, double seconds) {
   const auto share = [&](std::uint64_t n) {
     return 100.0 * static_cast<double>(n) / static_cast<double>(bank.candidates);
   };
-  fmt::print("{} databank samples from {} candidates in {:.2f} s: {:.1f} % accepted\n", bank.points(), bank.candidates, seconds,
-             share(bank.points()));
+  fmt::print("{} databank samples from {} candidates in {:.2f} s: {:.1f} % accepted\n", bank.points(),
+             bank.candidates, seconds, share(bank.points()));
   for (const auto& [why, count] : bank.refused)
     fmt::print("  {:<28}{:>10} candidates  {:5.1f} %\n", why, count, share(count));
   fmt::print("  {:<28}{:>10} candidates  {:5.1f} %\n", "closer than the minimum", bank.too_close,
@@ -55,7 +55,8 @@ int run(const std::string& config_file, const mpi::draw::Overrides& overrides, s
   const mpi::draw::Databank bank =
       mpi::draw::draw_databank(config, base, points > 0 ? points : config.points());
   if (bank.points() < (points > 0 ? points : config.points())) {
-    fmt::print(stderr, "stopped on a signal after {} databank samples: nothing was written; run the command again\n",
+    fmt::print(stderr,
+               "stopped on a signal after {} databank samples: nothing was written; run the command again\n",
                bank.points());
     return kSubmitAgain;
   }
@@ -78,7 +79,9 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--draws", overrides.draws,
            "number of events to simulate; determines the number of databank samples; overrides the config")
       .positive();
-  line.add("--points", points, "number of databank samples; overrides the number that the config's draws determine").positive();
+  line.add("--points", points,
+           "number of databank samples; overrides the number that the config's draws determine")
+      .positive();
   line.add("--seed", overrides.seed, "seed; overrides the config").not_negative();
   line.add("--out", out, "file to write: .csv or .h5");
   if (!line.parse(argc, argv)) return line.end();

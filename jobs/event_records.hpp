@@ -59,10 +59,11 @@ struct Reading {
   }
   /// Adds --point, the measured point that several units share.
   Option add_point(CommandLine& line) {
-    return line.add("--point", point,
-                    "file that describes the measuring point, if it serves several units or a collector system: the "
-                    "simulated power of the other units is subtracted from the record "
-                    "(configs/plants/README.md)");
+    return line.add(
+        "--point", point,
+        "file that describes the measuring point, if it serves several units or a collector system: the "
+        "simulated power of the other units is subtracted from the record "
+        "(configs/plants/README.md)");
   }
   /// Adds --switch, the switching times given by the user.
   Option add_switch(CommandLine& line) {
@@ -138,8 +139,7 @@ inline void note_unused_events(const std::vector<std::string>& files,
   if (quiet) return;
   for (const auto& e : staged)
     if (std::ranges::none_of(files, [&](const auto& file) { return e.applies_to(file); }))
-      fmt::print(stderr,
-                 "note: the [[event]] {} of {} is not used (none of these records has that name)\n",
+      fmt::print(stderr, "note: the [[event]] {} of {} is not used (none of these records has that name)\n",
                  validate::record::staged_name(e.kind), e.record);
 }
 

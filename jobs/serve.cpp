@@ -83,8 +83,8 @@ int run(Command& c) {
     return [&setup, step_of] { return std::make_shared<const live::Step>(step_of(*setup)); };
   };
   const Submitted first = std::async(std::launch::async, compared(live::first_step));
-  // Computed on request of the page, after the first step is shown, so that the comparison does not take processor
-  // time from the browser.
+  // Computed on request of the page, after the first step is shown, so that the comparison does not take
+  // processor time from the browser.
   Submitted submitted;
   std::once_flag asked;
   jobs::PageParts parts;

@@ -36,7 +36,8 @@ struct TrainingOptions {
         "--simulate", simulate,
         "simulate the events of this dataset config in memory instead of reading DATASET; nothing is written; "
         "results equal those of the stored dataset");
-    line.add("--draws", simulated.draws, "with --simulate: number of events; overrides the config").positive();
+    line.add("--draws", simulated.draws, "with --simulate: number of events; overrides the config")
+        .positive();
     line.add("--draw-seed", simulated.seed, "with --simulate: seed of the draws; overrides the config")
         .not_negative();
     line.add("--training-rows", training_rows,
@@ -46,30 +47,35 @@ struct TrainingOptions {
     line.add("--network", network, "network of the preset (default: its first)");
     line.add("--out", out, "folder for the result files");
     line.add("--seed", seed, "seed of weights, dropout, order and split").shows_default();
-    line.add("--noise", noise, "relative noise level L (0.001: 0.1 %): P, Q and V in pu of machine base, theta in rad; L/20 for speed; "
-             "L times the value for Efd and Ifd").shows_default();
-    line.add("--test-rows", test_rows,
-             "evaluate on about N evenly spaced test rows (default: the preset's)");
+    line.add(
+            "--noise", noise,
+            "relative noise level L (0.001: 0.1 %): P, Q and V in pu of machine base, theta in rad; L/20 for speed; "
+            "L times the value for Efd and Ifd")
+        .shows_default();
+    line.add("--test-rows", test_rows, "evaluate on about N evenly spaced test rows (default: the preset's)");
     line.add("--train-share", train_share, "fraction of the training rows to train on").shows_default();
     line.add("--epochs", epochs, "number of epochs; overrides the preset");
-    line.add("--threads", threads,
-             "number of threads, divided among the processes; default: the Slurm allocation, OMP_NUM_THREADS or the "
-             "number of cores");
+    line.add(
+        "--threads", threads,
+        "number of threads, divided among the processes; default: the Slurm allocation, OMP_NUM_THREADS or the "
+        "number of cores");
     line.add("--readers", readers, "threads that read shards which do not fit in memory").shows_default();
     line.add("--memory-limit", memory_limit, "series up to this size stay in memory [GiB]").shows_default();
     line.add_flag("--trust", trust,
                   "do not compare the shards with the hashes in the dataset's journal (0.1 s for 268 MB)");
     line.add_flag("--any-maker", any_maker,
                   "accept results and checkpoints written by another software version or CPU type");
-    line.add_flag("--shuffle-labels", shuffle_labels, "control run: expected MSE equals that of predicting the mean");
+    line.add_flag("--shuffle-labels", shuffle_labels,
+                  "control run: expected MSE equals that of predicting the mean");
     line.add_flag_off("--no-network", save_network,
                       "do not write the trained network beside its result (4 bytes a weight)");
     line.add("--print", print,
              fmt::format("print one entry of the experiment and exit: {}",
                          fmt::join(train::loop::kPrintable, ", ")));
-    line.add("--keep", keep,
-             "copy the experiment, the configs of its datasets and all files that these name into this folder, "
-             "print the path of the copy and exit");
+    line.add(
+        "--keep", keep,
+        "copy the experiment, the configs of its datasets and all files that these name into this folder, "
+        "print the path of the copy and exit");
   }
 
   /// Returns the training run that the options describe. Throws InputError if an option is missing or

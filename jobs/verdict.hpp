@@ -36,9 +36,10 @@ struct Judging {
     line.add("--by", signed_by, "name of the signer: printed on the page with date and inputs");
     return line.add(
         "--accept", accept,
-        fmt::format("acceptance limits for the fit-for-purpose verdict: a file (configs/accept/README.md), or "
-                    "the preset {} (default: {})",
-                    fmt::join(validate::thresholds::acceptance_presets(), " or "), preset));
+        fmt::format(
+            "acceptance limits for the fit-for-purpose verdict: a file (configs/accept/README.md), or "
+            "the preset {} (default: {})",
+            fmt::join(validate::thresholds::acceptance_presets(), " or "), preset));
   }
   /// Reads the limits and checks --pdf; call it before the work. Throws InputError.
   void read() {

@@ -70,9 +70,10 @@ struct Model {
           {"VAMAX", "VAMAX", "pu", 99.0, 0.0, 1000.0, kNoNullValue, "upper limit of the regulator", kNone}),
       lower_limit(
           {"VAMIN", "VAMIN", "pu", -99.0, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator", kNone}),
-      upper_limit({"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue, "maximum field voltage (ceiling) at rated terminal voltage"}),
-      lower_limit(
-          {"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue, "minimum field voltage at rated terminal voltage"}),
+      upper_limit({"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue,
+                   "maximum field voltage (ceiling) at rated terminal voltage"}),
+      lower_limit({"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue,
+                   "minimum field voltage at rated terminal voltage"}),
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "upper ceiling's drop by field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
       {"TF", "TF", "s", 1.0, 0.0, 20.0, kNoNullValue, "rate feedback's time constant"},

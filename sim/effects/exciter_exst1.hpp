@@ -36,9 +36,10 @@ struct Model {
       {"TB", "TB", "s", 10.0, 0.0, 100.0, kNoNullValue, "lag (0: bypass)"},
       {"KA", "KA", "pu", 200.0, 1.0, 2000.0, kNoNullValue, "gain", kCase},
       {"TA", "TA", "s", 0.02, 0.001, 2.0, kNoNullValue, "regulator time constant (0: none)"},
-      upper_limit(
-          {"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue, "maximum field voltage (ceiling) at rated terminal voltage", kCase}),
-      lower_limit({"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue, "minimum field voltage at rated terminal voltage",
+      upper_limit({"VRMAX", "VRMAX", "pu", 6.0, 0.5, 100.0, kNoNullValue,
+                   "maximum field voltage (ceiling) at rated terminal voltage", kCase}),
+      lower_limit({"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue,
+                   "minimum field voltage at rated terminal voltage",
                    literature::own("a bridge inverts slightly less than it rectifies")}),
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "ceilings' drop by field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},

@@ -25,7 +25,7 @@ struct Model {
   static constexpr std::string_view variant_of = "MAXEX2";
   static constexpr std::string_view description = R"(
   i = Ifd (Vfdflag = 0) or Efd (Vfdflag = 1)
-  d timer/dt = (i - Ifdset)/Tpickup  while i > Ifdset and timer < 1, Tpickup > 0    (Tpickup: operating time at 1 pu above)
+  d timer/dt = (i - Ifdset)/Tpickup  while i > Ifdset and timer < 1, Tpickup > 0 (Tpickup: operating time at 1 pu above)
              = 1/|Tpickup|           while i > Ifdset and timer < 1, Tpickup < 0    (definite time)
              = 0                     while Ifcont < i <= Ifdset and timer < 1
              = 1/s                   while i > Ifcont and 1 <= timer < 2            (timed out)
@@ -52,7 +52,8 @@ struct Model {
        "> 0: inverse runback rate [s/pu]; < 0: step of the reference [pu]",
        literature::own("a hundredth of the voltage each second")},
       {"Tmax", "Tmax", "s", 0.0, 0.0, 1000.0, kNoNullValue, "time above Ifdmax to trip (read, not modelled)"},
-      {"Tset", "Tset", "s", 0.0, 0.0, 10000.0, kNoNullValue, "time above Ifdset to trip (read, not modelled)"},
+      {"Tset", "Tset", "s", 0.0, 0.0, 10000.0, kNoNullValue,
+       "time above Ifdset to trip (read, not modelled)"},
       {"Ifcont", "Ifcont", "pu", 2.6, 0.5, 20.0, kNoNullValue, "continuous limit",
        literature::own("rated field current of MAXEX2")},
       {"Vfdflag", "Vfdflag", "code", 0.0, 0.0, 1.0, kNoNullValue,
@@ -135,7 +136,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
       "; parameter order of the PSLF .dyd: Ifdset, Ifdmax, Tpickup, Runback, Tmax, "
       "Tset, Ifcont, Vfdflag, Alarm";
   bad(!(p[Ifcont] > 0 && p[Ifcont] <= p[Ifdset]), says(Ifcont) + " pu with " + says(Ifdset) + " pu",
-      "the continuous limit Ifcont must be positive and not above the pickup Ifdset", 
+      "the continuous limit Ifcont must be positive and not above the pickup Ifdset",
       "give 0 < Ifcont <= Ifdset" + order);
   bad(p[Tpickup] == 0.0, says(Tpickup) + " s", "its sign selects inverse or definite time",
       "give Tpickup > 0 or < 0" + order);

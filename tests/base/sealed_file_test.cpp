@@ -1,4 +1,5 @@
-// Checksummed files: content survives a round trip, and every changed byte is detected before the content is used.
+// Checksummed files: content survives a round trip, and every changed byte is detected before the content is
+// used.
 #include "base/sealed_file.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// Checkpoints and saved networks: bytes after the magic number of a checksummed file, with a valid checksum ->
-// header and arrays.
+// Checkpoints and saved networks: bytes after the magic number of a checksummed file, with a valid checksum
+// -> header and arrays.
 #include <xxhash.h>
 
 #include "base/json.hpp"

@@ -38,9 +38,9 @@ class Claim {
  public:
   Claim(const fs::path& folder, const store::Part& part) {
     if (part.all()) return;
-    lock_ = std::make_unique<RunLock>(
-        folder / kClaimFile, LockWords{"dataset in use", folder.string(), "run the command again"},
-        std::chrono::minutes(2));
+    lock_ = std::make_unique<RunLock>(folder / kClaimFile,
+                                      LockWords{"dataset in use", folder.string(), "run the command again"},
+                                      std::chrono::minutes(2));
   }
   ~Claim() {
     if (lock_) lock_->withdraw(true);

@@ -1,7 +1,7 @@
 #pragma once
 // Expression graph of a user-defined model, with common subexpressions eliminated. Values that depend only on
-// constants, parameters and given operating-point values are marked: they are evaluated once per run, not once
-// per step.
+// constants, parameters and given operating-point values are marked: they are evaluated once per run, not
+// once per step.
 #include <array>
 #include <map>
 #include <string>
@@ -17,7 +17,8 @@ namespace swingbank::sim::user_models {
 /// base, its rated voltage included.
 struct SignalRecord {
   std::string_view name, meaning;
-  Slot made_in;  ///< slot that computes the signal; only later slots may read it (machine signals: every slot)
+  Slot
+      made_in;  ///< slot that computes the signal; only later slots may read it (machine signals: every slot)
 };
 inline constexpr std::array kSignals = {
     SignalRecord{"Vr", "terminal voltage, real part in the synchronous frame [pu]", Slot::machine},
