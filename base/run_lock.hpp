@@ -1,5 +1,5 @@
 #pragma once
-// Exclusive or shared lock on a folder: flock(2) on a file of its own, because a run replaces other files
+// Exclusive or shared lock on a folder: flock(2) on a separate file, because a run replaces other files
 // (journal, checkpoint), and a lock on them would be lost.
 #include <chrono>
 #include <filesystem>

@@ -109,11 +109,11 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
 void check_options(const Arguments& a) {
   Problems problems;
   if (a.effect.empty() != a.until_adequate)
-    problems.add(a.effect.empty() ? "no effect" : "an effect beside --until-adequate", "swingbank add",
+    problems.add(a.effect.empty() ? "no effect" : "an effect together with --until-adequate", "swingbank add",
                  "the effect is either named or searched for", "give one of EFFECT and --until-adequate");
   if (a.retrain && a.until_adequate)
-    problems.add("--retrain beside --until-adequate", "swingbank add", "networks are trained for one effect",
-                 "name the effect");
+    problems.add("--retrain together with --until-adequate", "swingbank add",
+                 "networks are trained for one effect", "name the effect");
   if (a.retrain && a.options.calibrate.held_out.empty())
     problems.add("no event held out", "--retrain", "networks are judged on held-out events",
                  "hold out at least one with --hold-out");

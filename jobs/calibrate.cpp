@@ -285,7 +285,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
   line.add("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
   line.group("Expert");
   line.add("--draws", o.draws, "parameter sets tried as starts").shows_default().between(0, 100000);
-  line.add("--starts", o.starts, "how many of them are refined, beside the model's own values")
+  line.add("--starts", o.starts, "how many of them are refined, in addition to the model's own values")
       .shows_default()
       .between(0, 1000);
   line.add("--seed", o.seed, "of the draws").shows_default();

@@ -1,5 +1,5 @@
 #pragma once
-// Fits in processes of their own, so that a crash of a fit does not end the server, and a stop signal reaches
+// Fits in separate processes, so that a crash of a fit does not end the server, and a stop signal reaches
 // this fit alone.
 #include <functional>
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace swingbank::jobs {
 
-/// Running fit in a process of its own. Destruction asks it to end.
+/// Running fit in a separate process. Destruction asks it to end.
 class FitProcess {
  public:
   /// Takes ownership of the socket to the process.

@@ -57,8 +57,9 @@ void declare(jobs::CommandLine& line, Command& c) {
       .not_negative();
   line.add_flag("--dedicated-master", c.options.dedicated_master,
                 "rank 0 only leads (from 32 ranks on always)");
-  const jobs::Option part = line.add(
-      "--part", c.part, "k/n: only the k-th of n parts of the shards, beside runs that make the others");
+  const jobs::Option part =
+      line.add("--part", c.part,
+               "k/n: generate only the k-th of n parts of the shards; other runs generate the others");
   line.add("--databank", c.options.databank,
            "databank of this config from swingbank databank (.h5), not drawn again");
   const jobs::Option repair =

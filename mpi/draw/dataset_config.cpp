@@ -116,7 +116,7 @@ void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, st
 /// Reads `user_models` and `attach`. User-defined models come first, because they may be attached and varied.
 void read_effects(Config& c, DatasetConfig& d) {
   for (const auto& text : c.optional<std::vector<std::string>>(
-           "laws", {}, {.meaning = "files of user-defined models, beside this file"})) {
+           "laws", {}, {.meaning = "files of user-defined models, relative to the folder of this file"})) {
     d.user_models.push_back((c.name().parent_path() / text).lexically_normal());
     try {
       sim::user_models::load_user_model(d.user_models.back(), d.library);
@@ -393,8 +393,8 @@ namespace {
 DatasetConfig read_values(Config& c, std::optional<double>& megabytes) {
   DatasetConfig d;
   d.file = c.name();
-  d.raw = c.file("raw", {.meaning = "network (.raw or .m), beside this file"});
-  d.dyr = c.file("dyr", {.meaning = "dynamic models, beside this file"});
+  d.raw = c.file("raw", {.meaning = "network (.raw or .m), relative to the folder of this file"});
+  d.dyr = c.file("dyr", {.meaning = "dynamic models, relative to the folder of this file"});
   read_case(c, d);
   d.psse = c.choice("convention", {"psse", "andes"},
                     Range{.meaning = "psse: governors set power; andes: torque"}) != "andes";

@@ -1,6 +1,6 @@
 #pragma once
 // Dynamic load balancing of independent items on rank 0: each idle rank gets the next item, and rank 0 works
-// in a thread of its own. For items with long and uneven run times (plants of a fleet, blind cases); datasets
+// in a separate thread. For items with long and uneven run times (plants of a fleet, blind cases); datasets
 // have their own master (mpi/ranks).
 #include <chrono>
 #include <deque>

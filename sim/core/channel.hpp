@@ -20,7 +20,7 @@ inline constexpr std::array<ChannelRecord, 9> kChannels = {{
     {Channel::P, "P", "pu", "active power out of the machine"},
     {Channel::Q, "Q", "pu", "reactive power out of the machine"},
     {Channel::V, "V", "pu", "terminal voltage magnitude"},
-    {Channel::theta, "theta", "rad", "terminal voltage angle in the synchronous frame; held while V = 0"},
+    {Channel::theta, "theta", "rad", "terminal voltage angle in the synchronous frame; constant while V = 0"},
     {Channel::Efd, "Efd", "pu", "field voltage, 1 pu on the air-gap line"},
     {Channel::Ifd, "Ifd", "pu", "field current, 1 pu on the air-gap line"},
     {Channel::Tm, "Tm", "pu", "mechanical torque, or power where the convention says so"},

@@ -93,7 +93,7 @@ class GridMaker {
     if (!refused.empty() && !options_.drop_refused && effect->slot == Slot::machine) refused_.insert(key);
     for (const Problem& p : refused.list()) {
       if (options_.drop_refused)
-        grid_.network.remark("records with values that their model does not accept are left out, as asked",
+        grid_.network.remark("records with values that their model does not accept are ignored, as requested",
                              p.what + " (" + p.where + ")");
       else
         refuse(p, given.line);
@@ -146,7 +146,7 @@ class GridMaker {
     const auto found = plant_of_.find(key);
     if (found == plant_of_.end()) {
       grid_.network.remark(
-          "records for generators that the network does not have are left out",
+          "records for generators that the network does not have are ignored",
           record.model + " of '" + record.id + "' at bus " + std::to_string(record.bus) + " (" + where + ")");
       return;
     }
@@ -236,7 +236,7 @@ class GridMaker {
         problems.add("a second model, " + what, where,
                      "it already has " + std::string(other->block.effect->dyr_name), "keep one of them");
     }
-    if (!any) grid_.network.remark("models of loads out of service are left out", what + " (" + where + ")");
+    if (!any) grid_.network.remark("models of loads out of service are ignored", what + " (" + where + ")");
   }
   /// Adds a model of a switched shunt; a record without an id applies to the first one at its bus.
   void add_shunt_model(const Effect& effect, formats::DyrRecord record, const std::string& where,
@@ -253,8 +253,7 @@ class GridMaker {
     };
     const auto shunt = std::ranges::find_if(grid_.network.shunts, is_its);
     if (shunt == grid_.network.shunts.end()) {
-      grid_.network.remark("models of switched shunts out of service are left out",
-                           what + " (" + where + ")");
+      grid_.network.remark("models of switched shunts out of service are ignored", what + " (" + where + ")");
       return;
     }
     model.id = shunt->id;

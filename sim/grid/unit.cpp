@@ -202,7 +202,8 @@ class UnitReader {
   bool dropped(const formats::DyrRecord& record) {
     for (const auto& name : choice_.models.ignore)
       if (capitals(name) == record.model || capitals(name) == record.user) {
-        unit_.notes.push_back(fmt::format("{} of line {} left out, as asked", name_of(record), record.line));
+        unit_.notes.push_back(
+            fmt::format("{} of line {} ignored, as requested", name_of(record), record.line));
         return true;
       }
     return false;
@@ -423,7 +424,7 @@ class UnitReader {
     at(block, "X") = way.z.imag() * scale;
     at(block, "ratio") = way.ratio;
     if (way.magnetising)
-      unit_.notes.push_back("the transformer's magnetising current is left out (" + where + ")");
+      unit_.notes.push_back("the transformer's magnetising current is neglected (" + where + ")");
     unit_.notes.push_back("the transformer is taken from " + where);
     block.effect->check(nullptr, block.p.data(), where, problems_);
   }

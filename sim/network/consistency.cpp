@@ -259,7 +259,7 @@ void settle_duplicates(Network& n, const std::vector<Duplicate>& duplicates, boo
       n.remark("duplicate equipment is kept under a new id, because the file's voltages confirm it",
                kept_as(duplicates[i]) + numbers);
     else
-      n.remark("duplicate equipment is left out, because the file's voltages contradict it",
+      n.remark("duplicate equipment is ignored, because the file's voltages contradict it",
                duplicates[i].text + numbers);
   }
   erase_equipment(n, [&]<class E>(Duplicate::Kind kind, const E& e) {
@@ -378,7 +378,7 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
   if (at_bus.empty() || !problems.empty()) return;
   if (how == DeviceReplacement::none) {
     for (const auto& [b, names] : at_bus)
-      n.remark("equipment without a model is left out, as asked",
+      n.remark("equipment without a model is ignored, as requested",
                names + " at bus " + std::to_string(at(n, b).number));
     return;
   }

@@ -43,6 +43,6 @@ refuses "a record without Efd" "no column Efd_pu" swingbank compare --model unit
 refuses "a record without speed" "omega_pu, speed_pu or f_pu" swingbank compare --model unit.toml --record few.csv --component exciter
 # A staged event without its record is reported, since the name may be mistyped.
 { cat unit.toml && printf '\n[[event]]\nkind = "vref_step"\nrecord = "few.txt"\ntime = 1\nsize = 0.03\n'; } >mistyped.toml
-refuses "a mistyped record" "vref_step of few.txt is left out" swingbank compare --model mistyped.toml --record few.csv
+refuses "a mistyped record" "vref_step of few.txt is not used" swingbank compare --model mistyped.toml --record few.csv
 printf '\n[[event]]\nkind = "step"\ntime = 1\n' >>unit.toml
 refuses "an unknown event" "load_rejection" swingbank compare --model unit.toml --record few.csv

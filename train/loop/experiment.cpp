@@ -221,10 +221,11 @@ Experiment read_experiment(Config& c) {
   e.table = c.has("table") ? c.choice("table", {"IV", "V", "VI"}, Range{.meaning = "table of the thesis"})
                            : file.stem().string();
   e.title = c.require<std::string>("title", {.meaning = "title in reports"});
-  e.dataset = c.file("dataset", {.meaning = "config of the dataset, beside this file"});
+  e.dataset = c.file("dataset", {.meaning = "config of the dataset, relative to the folder of this file"});
   if (c.has("training_dataset"))
     e.training_dataset =
-        c.file("training_dataset", {.meaning = "config of rows that only train, beside this file"});
+        c.file("training_dataset",
+               {.meaning = "config of rows that only train, relative to the folder of this file"});
   const std::string split =
       c.choice("split", {"leave-one-generator-out", "by-databank-point", "across-datasets"},
                Range{.meaning = "split into rows that train and rows that judge"});

@@ -106,7 +106,8 @@ Test read_test(Config& c, int index) {
   t.post = window(c, at + "post");
   t.record = c.optional<std::string>(
       at + "record", "",
-      {.meaning = "file of --records, or path beside this file (default: the test's name)"});
+      {.meaning =
+           "file of --records, or path relative to the folder of this file (default: the test's name)"});
   for (const auto& key : c.keys(fmt::format("test[{}]", index)))
     if (!std::ranges::count(kKeys, key))
       c.problem(at + key, "unknown key " + key, "a test has no such key",

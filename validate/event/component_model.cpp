@@ -31,7 +31,7 @@ std::string left_out_of(const sim::plant::Plant& plant, Component component) {
 plant::PlantModel component_model(plant::PlantModel model, Component component) {
   if (component == Component::plant) return model;
   if (const auto names = left_out_of(model.plant, component); !names.empty())
-    model.warnings.push_back(fmt::format("{} alone: {} of the plant file {} left out; the record replaces {}",
+    model.warnings.push_back(fmt::format("{} alone: {} of the plant file {} ignored; the record replaces {}",
                                          record::component_name(component), names,
                                          names.find(',') == std::string::npos ? "is" : "are",
                                          names.find(',') == std::string::npos ? "it" : "them"));

@@ -92,7 +92,7 @@ MeasuredPoint read_point(Config& c, const std::filesystem::path& tried) {
         c.problem(at + "." + key, "unknown key " + key, "a unit has model, and share or P_MW and Q_Mvar",
                   "remove it");
     const std::filesystem::path model =
-        c.file(at + ".model", {.meaning = "plant file of the unit, beside this file"});
+        c.file(at + ".model", {.meaning = "plant file of the unit, relative to the folder of this file"});
     OtherUnit unit = read_part(c, at);
     std::error_code error;
     if (model.empty() || !std::filesystem::exists(model, error)) continue;  // reported by the config

@@ -29,9 +29,11 @@ FleetPlant read_plant(Config& c, const std::string& name, const fs::path& folder
   const std::string at = "plant." + name + ".";
   FleetPlant p = common;
   p.name = name;
-  p.model = folder / c.require<std::string>(at + "model", {.meaning = "plant file, beside this file"});
+  p.model = folder / c.require<std::string>(at + "model",
+                                            {.meaning = "plant file, relative to the folder of this file"});
   p.records = c.require<std::vector<std::string>>(
-      at + "records", {.meaning = "records of two events or more: files and globs, beside this file"});
+      at + "records",
+      {.meaning = "records of two events or more: files and globs, relative to the folder of this file"});
   read_options(c, at, p);
   if (c.has(at + "records") && p.records.empty())
     c.problem(at + "records", "no record", "a diagnosis needs those of two events or more",

@@ -294,7 +294,7 @@ class Identifying {
   }
   void report_progress(event::Phase phase, const std::string& item, int done, std::size_t total) const {
     if (report_)
-      report_(phase, item.empty() || base_model_.with.empty() ? item : item + " beside " + base_model_.with,
+      report_(phase, item.empty() || base_model_.with.empty() ? item : item + " with " + base_model_.with,
               done, static_cast<int>(total));
   }
 

@@ -180,7 +180,7 @@ class WholeFits {
         [&](int done, std::size_t i) {
           if (!report_) return;
           const std::string& name = candidates[i].hypothesis.name;
-          report_(phase, first() ? name : name + " beside " + base_model_.with, done,
+          report_(phase, first() ? name : name + " with " + base_model_.with, done,
                   static_cast<int>(candidates.size()));
         },
         base_model_.threads);

@@ -1,5 +1,5 @@
 #pragma once
-// Fits of the live page: diagnosis, addition of an effect, and calibration. Each runs in a process of its own
+// Fits of the live page: diagnosis, addition of an effect, and calibration. Each runs in a separate process
 // and reports by messages.
 #include <functional>
 

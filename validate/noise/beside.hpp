@@ -1,5 +1,5 @@
 #pragma once
-// Distance from a switching within which residuals are not taken for noise.
+// Distance from a switching within which residuals do not count as noise.
 
 namespace swingbank::validate::noise {
 

@@ -222,7 +222,8 @@ void read_submitted(Config& config, PlantModel& model) {
 std::vector<fs::path> read_user_models(Config& config, EffectLibrary& library) {
   std::vector<fs::path> files;
   for (const auto& name : config.optional<std::vector<std::string>>(
-           kUserModels, {}, {.meaning = "files of user-defined models, beside this file"})) {
+           kUserModels, {},
+           {.meaning = "files of user-defined models, relative to the folder of this file"})) {
     const fs::path file = (config.name().parent_path() / name).lexically_normal();
     try {
       sim::user_models::load_user_model(file, library);
@@ -257,8 +258,10 @@ void read_from_grid(Config& config, PlantModel& model) {
     config.exclude(twice, std::string(twice) + " beside [grid]", "the grid's files give it already",
                    "remove one of them");
   sim::grid::UnitChoice choice{
-      .raw = config.file("grid.raw", {.meaning = "network (.raw or .m), beside this file"}),
-      .dyr = config.file("grid.dyr", {.meaning = "dynamic models (.dyr or .dyd), beside this file"})};
+      .raw =
+          config.file("grid.raw", {.meaning = "network (.raw or .m), relative to the folder of this file"}),
+      .dyr = config.file("grid.dyr",
+                         {.meaning = "dynamic models (.dyr or .dyd), relative to the folder of this file"})};
   choice.bus = static_cast<int>(
       config.require<std::int64_t>("grid.bus", {1.0, kMostBuses, "", "bus number of the unit"}));
   choice.dyd = sim::formats::is_dyd(choice.dyr);

@@ -160,7 +160,7 @@ class Data {
     return true;
   }
   void note_cut(const std::string& where) {
-    out_.notes.push_back(fmt::format("The last sample ({}) is cut off and was left out.", where));
+    out_.notes.push_back(fmt::format("The last sample ({}) is truncated and was ignored.", where));
   }
 
   /// Returns a value; missing if 0x8000 or 0x80000000 (8.6), or a FLOAT32 that is not finite.

@@ -254,7 +254,7 @@ class CsvReader {
     const bool ragged = cells_.size() != width_;
     if (ragged && cells_.size() < width_ && ends()) {
       raw.about.notes.push_back(
-          fmt::format("The last line ({}:{}) breaks off and was left out.", name_, number_));
+          fmt::format("The last line ({}:{}) is truncated and was ignored.", name_, number_));
       lines_.pop_back();
       return;
     }

@@ -72,7 +72,7 @@ std::string record_schema() {
       {"$schema", "http://json-schema.org/draft-07/schema#"},
       {"title", "Row of a record of Swingbank"},
       {"description",
-       "One row of a text file by its column names. null: no value. Columns of other names are left out, unless "
+       "One row of a text file by its column names. null: no value. Columns with other names are ignored, unless "
        "their names are other spellings of these (validate/record/README.md) or a map of columns names them."},
       {"type", "object"},
       {"properties", properties},

@@ -312,7 +312,7 @@ void add_choice(const std::vector<RunResult>& results, const std::string& table,
       "Choice of a recipe, nested: MSE / predict-the-mean on generators that the table's run "
       "trains on, their geometric mean; the excluded generator was not used. The smallest "
       "value of a row is chosen.",
-      {"left out", "judged on"},
+      {"excluded", "evaluated on"},
       {}};
   for (const auto& network : networks) choice.header.push_back(method_name(network));
   for (const auto& [generator, sums] : of) {
@@ -392,8 +392,8 @@ std::vector<std::pair<std::string, std::string>> csv_files(const std::vector<Run
 TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources) {
   Report to{
       {"Calibration by learning: Tables IV, V and VI",
-       "Mean squared error over the model's parameters on test events, in raw units, beside the thesis "
-       "(Y. Wu, University of Vermont, 2020, chapter 4) and beside predicting the mean. Only the raw MSE may be "
+       "Mean squared error over the model's parameters on test events, in raw units, compared with the thesis "
+       "(Y. Wu, University of Vermont, 2020, chapter 4) and with predicting the mean. Only the raw MSE may be "
        "compared with the thesis."}};
   const auto tasks = tasks_of(results);
   std::map<std::string, std::string> others;  // titles of experiments other than the thesis's tables

@@ -73,15 +73,15 @@ sim::grid::EventTexts read_texts(Config& c) {
 
 void read_grid(Config& c, SystemCase& s) {
   sim::library::EffectLibrary library;
-  for (const auto& name :
-       c.optional<Texts>("laws", {}, {.meaning = "files of user-defined models, beside this file"}))
+  for (const auto& name : c.optional<Texts>(
+           "laws", {}, {.meaning = "files of user-defined models, relative to the folder of this file"}))
     attempt(c, "laws", [&] {
       const fs::path user_model = (c.name().parent_path() / name).lexically_normal();
       sim::user_models::load_user_model(user_model, library);
       s.user_models.emplace_back(user_model, sha256_of(user_model));
     });
-  s.raw = c.file("system.raw", {.meaning = "network (.raw or .m), beside this file"});
-  s.dyr = c.file("system.dyr", {.meaning = "dynamic models, beside this file"});
+  s.raw = c.file("system.raw", {.meaning = "network (.raw or .m), relative to the folder of this file"});
+  s.dyr = c.file("system.dyr", {.meaning = "dynamic models, relative to the folder of this file"});
   const auto conventions = c.choice("system.conventions", {"psse", "andes"},
                                     Range{.meaning = "psse: governors set power; andes: torque"}) == "andes"
                                ? sim::Conventions::andes()
@@ -174,8 +174,8 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   const auto number =
       c.optional<std::int64_t>(at + "bus", 0, {1, 999999, "", "bus number, in place of a plant"});
   const auto plant = c.optional<std::string>(at + "plant", "", {.meaning = "name of the plant: 2, 30/1"});
-  const auto file =
-      c.require<std::string>(at + "record", {.meaning = "FILE or FILE#TERMINAL, beside this file"});
+  const auto file = c.require<std::string>(
+      at + "record", {.meaning = "FILE or FILE#TERMINAL, relative to the folder of this file"});
   const auto instruments =
       c.optional<Texts>(at + "instruments", {}, {.meaning = "instruments of this record"});
   if (!c.sound()) return;

@@ -254,17 +254,16 @@ void rank_terminals(const SystemCase& s, SystemComparison& c) {
     c.culprit = "All terminals are within the limits.";
   else if (failing > 0)
     c.culprit = fmt::format(
-        "Largest error at terminal {}. Its plant's model also fails in playback of its own "
+        "Largest error at terminal {}. Its plant's model also fails in playback of its "
         "recorded voltage ({}); correct this model first.{}",
         s.terminals[first.terminal].name, first.alone_where,
         failing > 1 ? fmt::format(" {} more plants fail in playback.", failing - 1) : "");
   else
     c.culprit = fmt::format(
         "Largest error at terminal {} ({}).{}", s.terminals[first.terminal].name, first.where,
-        played > 0
-            ? " Every recorded plant is adequate in playback of its own recorded voltage, so the error "
-              "is in the network, the loads, the event, or a plant without a record."
-            : "");
+        played > 0 ? " Every recorded plant is adequate in playback of its recorded voltage, so the error "
+                     "is in the network, the loads, the event, or a plant without a record."
+                   : "");
 }
 
 }  // namespace

@@ -79,10 +79,10 @@ Acceptance read(Config& file) {
     }
   a.after_fault =
       file.optional<double>("left_out.after_fault", from ? from->after_fault : 0,
-                            {0, kMostAfterFault, "s", "time left out after the first switching of a fault"});
+                            {0, kMostAfterFault, "s", "time excluded after the first switching of a fault"});
   a.after_clearing =
       file.optional<double>("left_out.after_clearing", from ? from->after_clearing : 0,
-                            {0, kMostAfterClearing, "s", "time left out after the last switching"});
+                            {0, kMostAfterClearing, "s", "time excluded after the last switching"});
   a.movement = file.optional<double>(
       "movement.error", movement.error,
       {0.001, kMostPercent, "% of movement", "RMS of modelled - measured after the last switching"});

@@ -276,7 +276,7 @@ Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking la
   const std::vector<double> surplus(record.values.begin() + static_cast<std::ptrdiff_t>(takes),
                                     record.values.end());
   record.values.resize(takes);
-  return {true, "surplus values at the end of records are left out, as asked",
+  return {true, "surplus values at the end of records are ignored, as requested",
           fmt::format("{}: {} ({})", record_text, fmt::join(surplus, ", "), where)};
 }
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record) {

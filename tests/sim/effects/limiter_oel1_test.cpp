@@ -105,7 +105,7 @@ TEST(LimiterOel1, RefusesUnsupportedParameters) {
   const double other[] = {0.0, 1.05, 1.5, 10.0, 100.0, 0.0, 999.0, 1.0, 0.0};
   oel1.check(nullptr, other, "other.dyr:1", problems);
   EXPECT_FALSE(problems.empty());
-  EXPECT_NE(oel1.remark(oel1.default_parameters().data()).find("Ifdmax = 4 pu is left out"),
+  EXPECT_NE(oel1.remark(oel1.default_parameters().data()).find("Ifdmax = 4 pu is not modelled"),
             std::string::npos);
 }
 

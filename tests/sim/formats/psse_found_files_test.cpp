@@ -237,7 +237,7 @@ TEST(FoundFiles, OmitsOrInfersDevicesOnRequest) {
   options.devices = network::DeviceReplacement::none;
   const network::Network n = parse_raw(c.text(), "case.raw", options);
   EXPECT_EQ(n.loads.size(), 2u);
-  EXPECT_THAT(places(n, "left out, as asked"), ::testing::SizeIs(1));
+  EXPECT_THAT(places(n, "ignored, as requested"), ::testing::SizeIs(1));
 }
 
 TEST(FoundFiles, DropsRepeatedRecordsOnRequest) {
@@ -257,7 +257,7 @@ TEST(FoundFiles, DropsRepeatedRecordsOnRequest) {
   RawOptions options;
   options.drop_refused = true;
   const network::Network n = parse_raw(c.text(), "case.raw", options);
-  EXPECT_THAT(places(n, "second time is left out"), ::testing::SizeIs(8));
+  EXPECT_THAT(places(n, "second time is ignored"), ::testing::SizeIs(8));
   EXPECT_EQ(n.buses.size(), 4u);  // with the star point
   EXPECT_EQ(n.buses[2].vm, 0.99);
   ASSERT_EQ(n.loads.size(), 1u);

@@ -70,7 +70,7 @@ TEST(RepeatedBranch, IsOmitted_WhenTheVoltagesShowIt) {
   const network::Network n = read(c, repeated(Repeated::voltages));
   ASSERT_THAT(n.branches, SizeIs(3));
   EXPECT_FALSE(n.branches[2].in_service);
-  EXPECT_THAT(places(n, "left out, because the file's voltages contradict it"), SizeIs(1));
+  EXPECT_THAT(places(n, "ignored, because the file's voltages contradict it"), SizeIs(1));
   const auto a = network::solve_power_flow(n), b = network::solve_power_flow(RawCase{}.read());
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(a.voltage[i] - b.voltage[i]), 0.0, 1e-12) << i;
 }
@@ -117,7 +117,7 @@ TEST(RepeatedEquipment, OfEveryKindIsDecidedByTheVoltages) {
     store_voltages(stored, with ? read(stored, repeated(Repeated::kept)) : once.read());
     const network::Network n = read(stored, repeated(Repeated::voltages));
     EXPECT_THAT(places(n, with ? "kept under a new id, because the file's voltages confirm it"
-                               : "left out, because the file's voltages contradict it"),
+                               : "ignored, because the file's voltages contradict it"),
                 SizeIs(4))
         << with;
     EXPECT_EQ(n.loads.size(), with ? 3u : 2u);
@@ -144,7 +144,7 @@ TEST(MissingBus, EquipmentIsLeftOutAndNamedOnRequest) {
   EXPECT_THAT(problems_of([&] { read(c, {}); }), SizeIs(8));
   EXPECT_THAT(sentences_of([&] { read(c, {}); }), HasSubstr("leave the equipment out with --drop-refused"));
   const network::Network n = read(c, dropping());
-  EXPECT_THAT(places(n, "not in the bus section is left out, as asked"), SizeIs(8));
+  EXPECT_THAT(places(n, "not in the bus section is ignored, as requested"), SizeIs(8));
   EXPECT_THAT(places(n, "not in the bus section")[0], HasSubstr("load record at bus 177 (case.raw:"));
   const network::PowerFlow a = network::solve_power_flow(n), b = network::solve_power_flow(RawCase{}.read());
   ASSERT_EQ(n.buses.size(), 3u);

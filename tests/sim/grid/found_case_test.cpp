@@ -46,7 +46,7 @@ TEST(FoundCase, RecordsWithoutAGeneratorAreLeftOutWithARemark) {
   // The model of the generator out of service may be unknown; the other two are named.
   const Grid grid =
       make(raw, kBoth + "102 'STRANGE' 2 1 2 /\n103 'GENCLS' 1 3 0 /\n102 'SEXS' X 0.1 10 100 0.1 0 3 /\n");
-  EXPECT_THAT(places(grid, "does not have are left out"),
+  EXPECT_THAT(places(grid, "does not have are ignored"),
               ElementsAre(HasSubstr("GENCLS of '1' at bus 103 (case.dyr:4)"), HasSubstr("case.dyr:5")));
 }
 

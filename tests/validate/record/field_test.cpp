@@ -107,7 +107,7 @@ TEST(PscadTest, DomainIsTheTime) {
       text, "r.csv", kTestBase,
       {.columns = {{"V", "Vpu [pu]"}, {"P", "Pgen [MW]"}, {"Q", "Qgen [Mvar]"}, {"f", "fbus [Hz]"}}});
   expect_values(r);
-  EXPECT_THAT(r.notes, Contains(HasSubstr("taken for seconds")));
+  EXPECT_THAT(r.notes, Contains(HasSubstr("interpreted as seconds")));
 }
 
 // ---- playback files of simulators, joined with measurements

@@ -89,7 +89,7 @@ TEST(ThreePhasePhasors, NamesAndUnits) {
   expect_sequence(
       {.v = "V Mag {}", .va = "V Ang {}", .i = "I Mag {}", .ia = "I Ang {}", .phases = {"R", "S", "T"}});
   EXPECT_THAT(parse_record(text_of({}), "r.csv", kTestBase).notes,
-              AllOf(Contains(HasSubstr("'Va_mag' names no unit")), Contains(HasSubstr("taken for V.")),
+              AllOf(Contains(HasSubstr("'Va_mag' names no unit")), Contains(HasSubstr("indicate V.")),
                     Contains(HasSubstr("positive sequence of the phasors Va_mag, Vb_mag, Vc_mag"))));
 }
 TEST(ThreePhasePhasors, RejectUnbalance) { expect_sequence({.unbalance = 0.05}); }

@@ -73,7 +73,7 @@ TEST(RecorderLeniency, LastSampleCutOff) {
     const Record r = read(w.cfg(), dat.substr(0, dat.size() - 7));
     EXPECT_EQ(r.samples(), 89) << kind;
     EXPECT_LT(phasor_error(r), kRounding) << kind;
-    EXPECT_THAT(r.notes, AllOf(Contains(HasSubstr("is cut off and was left out")),
+    EXPECT_THAT(r.notes, AllOf(Contains(HasSubstr("is truncated and was ignored")),
                                Contains(HasSubstr("announces 90 samples, the data hold 89"))));
     EXPECT_EQ(read(w.cfg(), dat + "\x1a").samples(), 90) << kind;
   }

@@ -281,8 +281,7 @@ TEST_F(SystemCompare, GridErrorIsAttributedToNoPlant) {
   const SystemCase s = load_system(system("4:2.0:2.1\"", "4:2.0:2.1:0.01:0.02\""));
   const SystemComparison c = compare_system(s);
   EXPECT_FALSE(c.adequacy.adequate);
-  EXPECT_THAT(c.culprit,
-              HasSubstr("Every recorded plant is adequate in playback of its own recorded voltage"));
+  EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant is adequate in playback of its recorded voltage"));
 }
 
 TEST_F(SystemCompare, FindsSwitchingTimesBetweenSamples) {
@@ -302,8 +301,7 @@ TEST_F(SystemCompare, DetectsClockOffset) {
   EXPECT_FALSE(c.adequacy.adequate);
   EXPECT_THAT(c.terminals[3].notes, Contains(HasSubstr("not at the event's switching times")));
   // The plants are played in with the steps of their own records, so no plant is named.
-  EXPECT_THAT(c.culprit,
-              HasSubstr("Every recorded plant is adequate in playback of its own recorded voltage"));
+  EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant is adequate in playback of its recorded voltage"));
 }
 
 TEST_F(SystemCompare, JudgesOrSubtractsSteadyStateDifference) {

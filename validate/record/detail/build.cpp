@@ -82,8 +82,8 @@ void convert(RawRecord& raw, const RecordBase& base) {
   for (RawColumn& column : raw.columns) {
     if (is_deviation(column, base)) {
       column.meaning.deviation = true;
-      raw.about.notes.push_back(
-          fmt::format("The column '{}' was taken for the deviation from nominal frequency.", column.name));
+      raw.about.notes.push_back(fmt::format(
+          "The column '{}' was interpreted as the deviation from nominal frequency.", column.name));
     }
     for (double& v : column.values) v = to_record_units(column.meaning, v, base);
     if (column.meaning.quantity == Quantity::time)
@@ -106,7 +106,7 @@ void begin_at_zero(RawRecord& raw, Record& about) {
   about.start = fmt::format("{:.6f} s", first);
   if (first > 5e8 && first < 5e9) {  // 1985 to 2128
     about.epoch = first;
-    about.notes.push_back("The times are taken for seconds since 1970-01-01 UTC: t = 0 is " +
+    about.notes.push_back("The times are interpreted as seconds since 1970-01-01 UTC: t = 0 is " +
                           utc_text(first) + ".");
   }
   for (double& v : t) v -= first;

@@ -82,7 +82,7 @@ void settle_clock(RawRecord& raw) {
   if (unit) return;
   const Clock* clock = clock_of(kUnix, first);
   unit = clock ? clock->unit : Unit::second;
-  raw.about.notes.push_back(fmt::format("The column '{}' names no unit: it was taken for {}.", time.name,
+  raw.about.notes.push_back(fmt::format("The column '{}' names no unit: it was interpreted as {}.", time.name,
                                         clock ? clock->what : "seconds"));
 }
 

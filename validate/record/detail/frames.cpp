@@ -99,7 +99,7 @@ void drop_repeats(RawRecord& raw, SampleFaults& faults) {
   }
   if (dropped == 0) return;
   raw.about.notes.push_back(
-      fmt::format("{} rows repeat the times and values of earlier rows, the first at {}: left out.", dropped,
+      fmt::format("{} rows repeat the times and values of earlier rows, the first at {}: ignored.", dropped,
                   faults.where(first)));
   for (RawColumn& c : raw.columns) {
     std::vector<double> values;

@@ -87,9 +87,8 @@ class Combination {
       c.meaning.unit = Unit::pu;
     else
       refuse_unit(c, file_, fmt::format("{:.4g} is near neither {:g} Hz nor 1 pu", middle, base_.frequency));
-    raw_.about.notes.push_back(
-        fmt::format("The column '{}' names no unit: by its values it was taken for {}.", c.name,
-                    c.meaning.unit == Unit::hertz ? "Hz" : "per unit"));
+    raw_.about.notes.push_back(fmt::format("The column '{}' names no unit: its values indicate {}.", c.name,
+                                           c.meaning.unit == Unit::hertz ? "Hz" : "per unit"));
   }
 
   /// Infers the unit of angles: two phases are 120 degrees apart in one unit only.
@@ -141,9 +140,8 @@ class Combination {
   }
   static bool in_kilo(Unit u) { return u == Unit::kilovolt || u == Unit::kilovolt_ln; }
   void note_unit(const RawColumn& c, const std::string& unit) {
-    raw_.about.notes.push_back(
-        fmt::format("The column '{}' names no unit: by the values of the three phases it was taken for {}.",
-                    c.name, unit));
+    raw_.about.notes.push_back(fmt::format(
+        "The column '{}' names no unit: the values of the three phases indicate {}.", c.name, unit));
   }
 
   void combine(Quantity magnitude, Quantity angle) {

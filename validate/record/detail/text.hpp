@@ -10,8 +10,8 @@ namespace swingbank::validate::record {
 /// a plant file, an output file of a simulator, …) and how to export it.
 void refuse_binary(std::string_view bytes, const std::string& name);
 
-/// Returns the text as UTF-8. Other encodings are taken for Windows-1251 if most letters are Cyrillic in it,
-/// else for Windows-1252; `notes` reports which.
+/// Returns the text as UTF-8. Other encodings are interpreted as Windows-1251 if most letters are Cyrillic in
+/// it, else for Windows-1252; `notes` reports which.
 std::string as_utf8(std::string_view text, std::vector<std::string>& notes);
 
 }  // namespace swingbank::validate::record

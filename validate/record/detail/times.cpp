@@ -184,7 +184,7 @@ class Grid {
     const auto rate = 1 / h_;
     if (!twice_.empty())
       about.notes.push_back(
-          fmt::format("{} rows repeat the row before with its time stamp, the first at {}: left out.",
+          fmt::format("{} rows repeat the row before with its time stamp, the first at {}: ignored.",
                       twice_.size(), faults.where(twice_.front())));
     if (!stuck_.empty())
       about.notes.push_back(fmt::format(
@@ -193,7 +193,7 @@ class Grid {
           stuck_.size(), faults.where(stuck_.front())));
     if (!off_.empty())
       about.notes.push_back(fmt::format(
-          "{} {} at times between the samples ({:.6g} s apart), the first at {} (t = {:.6g} s): left out.",
+          "{} {} at times between the samples ({:.6g} s apart), the first at {} (t = {:.6g} s): ignored.",
           off_.size(), off_.size() == 1 ? "row is" : "rows are", h_, faults.where(off_.front()),
           t_[off_.front()]));
     if (coarse())
