@@ -55,8 +55,8 @@ int run(CommandLine& line, int argc, char** argv) {
            "bus number of a generator to judge on instead of the excluded one, which is then not "
            "used (for the choice of recipes); all: each of the others in turn");
   line.add("--processes", processes,
-           "processes that share the folds, each with its part of the threads (default: one "
-           "per core; 1 where mpirun or srun started several)");
+           "number of processes for the folds; the threads are divided among them (default: one "
+           "per core; 1 if mpirun or srun started several)");
   const auto check = [&](const train::run::RunRequest& request) {
     if (!request.experiment.leave_one_out)
       throw InputError({"this experiment leaves no generator out", options.experiment, "see its split",

@@ -137,7 +137,7 @@ int print_thresholds(bool json) {
 void declare(jobs::CommandLine& line, Command& c) {
   auto of_one_plant = c.of.declare(
       line,
-      "report.html, diagnosis.json and the file of a user-defined model where one is found; of a fleet for "
+      "report.html, diagnosis.json and the file of a user-defined model if one is found; of a fleet for "
       "fleet.html, fleet.json, fleet.csv and a folder per plant");
   for (const jobs::Option& option : c.of.declare_fit(line)) of_one_plant.push_back(option);
   line.group("Fleet");

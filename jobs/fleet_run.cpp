@@ -85,8 +85,8 @@ void declare_fleet(CommandLine& line, FleetCommand& c) {
   line.add("--fleet", c.fleet, "fleet file (configs/fleet/README.md)").required();
   line.add("--out", c.out, "folder for the table and a folder per plant").required();
   line.add("--threads", c.threads,
-           "threads for one plant; 0: one per core (default: that, or 1 where "
-           "several ranks share the machine)")
+           "threads for one plant; 0: one per core (default: 0, or 1 if several ranks share "
+           "the machine)")
       .between(0, 4096);
   line.add("--plant-timeout", c.limit, "time limit per plant [s]; 0: none").not_negative();
   line.add_flag("--json", c.json, "print the result as JSON instead of text");

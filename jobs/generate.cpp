@@ -191,9 +191,9 @@ int run(CommandLine& line, int argc, char** argv) {
       "Simulates the dataset that a config describes into a folder of HDF5 shards (docs/reference/formats.md).\n"
       "  swingbank generate configs/datasets/ieee39_gencls.toml --draws 4000 --out data/gencls\n"
       "  mpirun -np 8 swingbank generate ... on more cores: the data are the same to the last byte.\n"
-      "  swingbank generate ... --part 3/16 in a job array without MPI; with all parts made, the same bytes.\n"
-      "Run again, it makes what is missing. SIGTERM, SIGUSR1 or Ctrl-C end it softly: exit code 2, "
-      "run it again.");
+      "  swingbank generate ... --part 3/16 in a job array without MPI; with all parts generated, the bytes are the same.\n"
+      "A repeated run generates the missing shards. SIGTERM, SIGUSR1 or Ctrl-C stop it with exit "
+      "code 2, run it again.");
   Command command;
   declare(line, command);
   return mpi::ranks::run_on_all_ranks(session, [&] {

@@ -75,7 +75,7 @@ int run(CommandLine& line, int argc, char** argv) {
   const auto dyr = line.add("--dyr", a.unit.dyr, "dynamic models, PSS/E .dyr");
   line.add("--dyd", a.dyd, "or PSLF .dyd; configs/networks/README.md lists its models").excludes(dyr);
   line.add("--bus", a.unit.bus, "number of the unit's bus").required().positive();
-  line.add("--id", a.unit.id, "the unit's id, where the bus has several");
+  line.add("--id", a.unit.id, "id of the unit, if the bus has several units");
   line.group("Output");
   line.add("--out", a.out, "plant file to write (default: to the terminal)");
   line.group("Models");
@@ -101,7 +101,7 @@ int run(CommandLine& line, int argc, char** argv) {
           "voltage equations")
       .one_of({"psse", "andes"})
       .shows_default();
-  line.add("--frequency-hz", a.unit.frequency_hz, "nominal frequency [Hz], where the network has none");
+  line.add("--frequency-hz", a.unit.frequency_hz, "nominal frequency [Hz] of a network file without one");
   line.add("--raw-version", a.unit.raw_version, "version of a .raw file without a version number, 23 to 35");
   line.footer("Only the unit's own records are read; errors in other records are ignored.");
   line.example("swingbank plant --raw grid.raw --dyr grid.dyr --bus 33 --out plant.toml");

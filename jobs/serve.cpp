@@ -124,7 +124,7 @@ int run(Command& c) {
 }
 
 void declare(jobs::CommandLine& line, Command& c) {
-  c.of.declare(line, "what you save on the page: model.toml, model.dyr, model.dyd and report.html");
+  c.of.declare(line, "the files that the page saves: model.toml, model.dyr, model.dyd and report.html");
   c.of.declare_fit(line);
   line.group("Page");
   line.add("--port", c.port, "port on 127.0.0.1 (default: a free one)").between(0, 65535);

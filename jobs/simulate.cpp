@@ -362,7 +362,7 @@ int simulate(const Options& o) {
     fmt::print("wrote {}\n", file.string());
   }
   fmt::print("loads: {}\n", grid::describe_loads(grid));
-  fmt::print("{} at {:g} s{}, rotor angles moved apart by at most {:.3f} deg, {}{:.3f} s wall time\n",
+  fmt::print("{} at {:g} s{}, maximum change of rotor-angle differences {:.3f} deg, {}{:.3f} s wall time\n",
              outcome_name(run.outcome), run.stopped_at, run.lost_by.empty() ? "" : " (" + run.lost_by + ")",
              run.largest_spread * constants::degrees_in_radian,
              run.steps > 0 ? fmt::format("{} steps, ", run.steps) : "", wall);

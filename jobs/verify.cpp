@@ -31,7 +31,7 @@ void require_whole(const std::string& folder, const store::DatasetHeader& header
 int run(const std::string& folder, int processes, Progress::Mode mode) {
   require_whole(folder, store::read_header(folder), processes, mode);
   const store::Dataset dataset = store::open_dataset(folder, true);
-  fmt::print("{}{}every shard is as it was written\n", store::describe(dataset),
+  fmt::print("{}{}every shard agrees with its journal\n", store::describe(dataset),
              store::describe_attempts(folder));
   return dataset.complete ? 0 : kSubmitAgain;
 }

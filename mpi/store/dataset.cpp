@@ -25,7 +25,7 @@ constexpr const char* kInt16Dataset = "swingbank-dataset-3";  ///< a format that
 constexpr const char* kRestoreHeader =
     "restore the file from a copy, or make the dataset again in an empty folder";
 constexpr const char* kRemake =
-    "run generate with the dataset's config on this folder again: it makes what is missing";
+    "run generate with the dataset's config on this folder again: it generates the missing shards";
 
 nlohmann::ordered_json to_json(const DatasetHeader& h) {
   nlohmann::ordered_json j;

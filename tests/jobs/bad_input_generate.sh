@@ -8,7 +8,7 @@ own_mounts
 tiny_experiment "$work"
 config=$work/tiny_data.toml data=$work/data
 make_data() { "$swingbank" generate "$1" --out "$2" "${@:3}"; }
-whole() { "$swingbank" verify "$1" | holds -q 'every shard is as it was written'; }
+whole() { "$swingbank" verify "$1" | holds -q 'every shard agrees with its journal'; }
 
 refuses "no such config" "$work/none.toml" make_data "$work/none.toml" "$data"
 refuses "no such config" "$work/none.toml" "$swingbank" databank "$work/none.toml"

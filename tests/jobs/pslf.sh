@@ -14,7 +14,7 @@ run=(--fault 5:0.2:0.3 --t-end 1 --rate 30 --buses "1,5,39")
 cmp "$work/psse.csv" "$work/pslf.csv" || fail "the run is another"
 
 "$swingbank" simulate --epc "$epc" --dyd "$dyd" --frequency-hz 60 --t-end 2 --out "$work/still.csv" >"$work/said" 2>&1
-grep -q 'moved apart by at most 0.000 deg' "$work/said" || fail "it does not hold still: $(cat "$work/said")"
+grep -q 'maximum change of rotor-angle differences 0.000 deg' "$work/said" || fail "it does not hold still: $(cat "$work/said")"
 
 "$swingbank" inventory --epc "$epc" --dyd "$dyd" --frequency-hz 60 | holds -q '^10 units: 10 wholly covered' ||
   fail "inventory"

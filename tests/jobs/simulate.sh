@@ -7,7 +7,7 @@ simulate() { "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$n
 
 summary=$(simulate --fault 5:1:1.1:0.001:0.01 --trip 1:2:1:1.1:1.5 --plants 2,8 --channels delta,P,V --buses 5,9 \
   --out "$work/run.csv" --out "$work/run.h5")
-grep -qE '^stable at 4 s, rotor angles moved apart by at most [0-9.]+ deg, [0-9]+ steps, [0-9.]+ s wall time$' <<<"$summary" ||
+grep -qE '^stable at 4 s, maximum change of rotor-angle differences [0-9.]+ deg, [0-9]+ steps, [0-9.]+ s wall time$' <<<"$summary" ||
   fail "summary: $summary"
 header='t_s,2.delta_rad,2.P_pu,2.V_pu,8.delta_rad,8.P_pu,8.V_pu,bus5.V_pu,bus5.theta_rad,bus9.V_pu,bus9.theta_rad'
 [[ $(head -n 1 "$work/run.csv") == "$header" ]] || fail "header: $(head -n 1 "$work/run.csv")"

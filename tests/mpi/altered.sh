@@ -24,7 +24,7 @@ expect 1 "$where" "${make[@]}" --out "$bad"
 grep -q -- "--repair" "$work/output" || fail "no remedy"
 expect 0 "dataset $whole" "${make[@]}" --trust --out "$bad"
 expect 0 "dataset $whole" ranks 3 "${make[@]}" --repair --out "$bad"
-expect 0 "every shard is as it was written" "$verify" --processes 2 "$bad"
+expect 0 "every shard agrees with its journal" "$verify" --processes 2 "$bad"
 
 # A journal with other counts.
 for edit in 's/"rows":/&1/' 's/"draws":20/"draws":21/' 's/"stable":/&1/' 's/"rows":/&1000000000000000/'; do

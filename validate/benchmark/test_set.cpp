@@ -121,7 +121,7 @@ TestSet read_set(Config& c) {
   TestSet set;
   set.file = c.name();
   set.name = c.require<std::string>("name", {.meaning = "name of the set"});
-  set.source = c.optional<std::string>("source", "", {.meaning = "where the tests come from"});
+  set.source = c.optional<std::string>("source", "", {.meaning = "origin of the tests"});
   if (c.has("operating_point")) {
     InitialPoint p;
     p.P = c.require<double>("operating_point.P", {-2, 2, "pu of MVA", "active power out of the plant"});

@@ -110,7 +110,7 @@ class Check : Findings {
       warn("short_record", fmt::format("{:.3g} s of record", length),
            "it determines subtransient and transient reactances and a fast voltage regulator, "
            "inertia only roughly, governor and stabiliser not at all",
-           "export at least 5 s after the event where that is possible");
+           "export at least 5 s after the event if possible");
     if (!signals_.event) {
       refuse("no_event", "no event",
              fmt::format(
@@ -157,7 +157,7 @@ class Check : Findings {
               ? "the model starts at the mean of the first second (--pre-event), and playback begins "
                 "with the first sample"
               : "operating point and noise are estimated from these samples only, so the noise limit is higher",
-          "export it from at least 1 s before the event where that is possible");
+          "export it from at least 1 s before the event if possible");
     return true;
   }
 
@@ -190,7 +190,7 @@ class Check : Findings {
                 ? "a transducer or an archive has rounded it; behind a regulator the error is slow, so "
                   "that the residual of a correct model may exceed noise"
                 : "a transducer or an archive has rounded it; the noise is taken to be at least the quantisation noise",
-            "export it with more digits where that is possible");
+            "export it with more digits if possible");
   }
 
   /// Checks that the powers are steady before the event: otherwise the model's initial equilibrium is not the

@@ -179,7 +179,7 @@ class Readings {
             : fmt::format("playback into the model fails, but succeeds with {}", words_.words);
     return Finding{words_.kind,
                    as_is_.share ? Severity::warn : Severity::refuse,
-                   {what, r_.name, words_.why + "; the record was left as it is", words_.remedy}};
+                   {what, r_.name, words_.why + "; the record was not changed", words_.remedy}};
   }
 
   const record::Record& r_;

@@ -128,7 +128,7 @@ std::string terminal_report(const plant::PlantModel& model, const std::vector<Ev
   std::string out = fitness.sentence + "\n" + complete_text(adequacy.adequate, adequacy.sentence) + "\n" +
                     handed_in_text(handed);
   if (!adequacy.adequate)
-    out += "Next: swingbank diagnose, with the same options, names what the model lacks.\n";
+    out += "Next: swingbank diagnose, with the same options, names the missing component.\n";
   out += fmt::format("\n{} ({}): measured against modelled\n\n", model.name, plant::subject(model)) +
          error_text({{"", events, fitness}});
   const auto maps = maps_of(events);

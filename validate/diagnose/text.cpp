@@ -43,7 +43,7 @@ void add_probabilities(const Diagnosis& d, std::string& text) {
 void add_hypotheses(const Diagnosis& d, std::string& text) {
   text += fmt::format(
       "\nred. chi2: reduced chi-square; held-out red. chi2: mean over the held-out events\n"
-      "{:<18} {:<12} {:>12} {:>10} {:>40}  {}\n",
+      "{:<18} {:<12} {:>12} {:>10} {:>42}  {}\n",
       "hypothesis", "side", "evidence", "red. chi2", "held-out red. chi2: refitted → with effect",
       "judgement");
   for (std::size_t i = 0; i < d.ranked.size() && i < kHypothesesShown; ++i) {
@@ -53,7 +53,7 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
       before += h.before / static_cast<double>(j.held_out.size());
       after += h.after / static_cast<double>(j.held_out.size());
     }
-    text += fmt::format("{:<18} {:<12} {:>12.1f} {:>10} {:>40}  {}\n", hypothesis::full_name(j.hypothesis),
+    text += fmt::format("{:<18} {:<12} {:>12.1f} {:>10} {:>42}  {}\n", hypothesis::full_name(j.hypothesis),
                         hypothesis::side_name(j.hypothesis.side), j.gain,
                         j.fitted ? fmt::format("{:.3f}", j.fit.reduced_chi2()) : "",
                         j.held_out.empty() ? "" : fmt::format("{:.2f} → {:.3f}", before, after),

@@ -215,7 +215,7 @@ void write_plant_file(const fs::path& file, const PlantModel& model,
     if (!fs::equivalent(copy, model.user_models[k], none))
       write_file(copy,
                  read_input(model.user_models[k], "no readable file of a user-defined model of the plant",
-                            "put it back where it was"));
+                            "restore the file"));
   }
   write_file(file, text);
 }

@@ -206,7 +206,7 @@ Record from_phasors(const Comtrade& comtrade, Record about, const RecordBase& ba
                     "fill it at the source, or cut the record before it");
     if (c.skew != 0)
       about.notes.push_back(
-          fmt::format("Channel {} has a skew of {:.3g} ms, which was left as it is.", c.id, 1e3 * c.skew));
+          fmt::format("Channel {} has a skew of {:.3g} ms, which is not corrected.", c.id, 1e3 * c.skew));
   }
   raw.time_resolution = comtrade.resolution;
   raw.about = std::move(about);

@@ -97,7 +97,7 @@ class CsvReader {
       }
       if (data && header_.empty())
         problems_.add("no header line", fmt::format("{}:{}", name_, number_), "values come first",
-                      "give a first line such as t_s,V_pu,theta_rad,P_pu,Q_pu, or say what the columns are: "
+                      "give a first line such as t_s,V_pu,theta_rad,P_pu,Q_pu, or name the columns: "
                       "--columns \"t=#1 [s],V=#2 [pu],…\"");
       problems_.raise();
       if (data || header_.size() == 6) {

@@ -22,7 +22,7 @@ namespace swingbank::validate::record {
 namespace {
 
 constexpr const char* kExport =
-    "save vectors: save('event.mat', 't_s', 'V_kV', 'f_Hz', 'P_MW', 'Q_Mvar'), or say which is what: "
+    "save vectors: save('event.mat', 't_s', 'V_kV', 'f_Hz', 'P_MW', 'Q_Mvar'), or name the variables: "
     "--columns \"t=NAME [s],V=NAME [kV],…\"";
 constexpr int kDeepestStruct = 4;  ///< maximum depth of nested structs
 

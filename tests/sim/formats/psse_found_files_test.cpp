@@ -104,7 +104,7 @@ TEST(FoundFiles, BranchesWithoutImpedanceGetTheLeastImpedance) {
   c.branches += "103,104,'Z',0.0,0.0\n";
   c.transformers = "104,105,0,'1',1,1,1\n0,0,100\n1.0\n1.0\n";
   const network::Network n = c.read();
-  EXPECT_THAT(places(n, "without impedance"), ::testing::SizeIs(2));
+  EXPECT_THAT(places(n, "zero-impedance branches"), ::testing::SizeIs(2));
   const network::PowerFlow flow = network::solve_power_flow(n);
   EXPECT_NEAR(std::abs(flow.voltage[2] - flow.voltage[4]), 0.0, 1e-9);
 }

@@ -46,8 +46,9 @@ TEST_F(ReadingsTest, MirroredAngleIsReported) {
   const auto found = better_reading(r, model);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->kind, "angle_sign");
-  EXPECT_THAT(found->problem.sentence(), AllOf(HasSubstr("the sign of the angle reversed"),
-                                               HasSubstr("left as it is"), HasSubstr("theta=-NAME")));
+  EXPECT_THAT(found->problem.sentence(),
+              AllOf(HasSubstr("the sign of the angle reversed"), HasSubstr("the record was not changed"),
+                    HasSubstr("theta=-NAME")));
   for (double& q : r.Q) q = -q;
   EXPECT_THAT(better_reading(r, model)->problem.sentence(), HasSubstr("of the angle and of Q reversed"));
 }

@@ -50,7 +50,7 @@ TEST_F(Decide, FieldQuantitiesDistinguishExciters) {
   EXPECT_TRUE(std::ranges::any_of(
       d.next, [](const NextRecord& n) { return n.what.starts_with("field current in"); }));
   EXPECT_TRUE(std::ranges::is_sorted(d.next, {}, &NextRecord::expected));
-  EXPECT_THAT(decide_sentence(d), testing::HasSubstr("(of 2 candidates, 1."));
+  EXPECT_THAT(decide_sentence(d), testing::HasSubstr("(2 candidates → 1"));
 }
 TEST_F(Decide, NothingDistinguishesAnExciterFromItself) {
   const Judgement sexs = fitted("SEXS");

@@ -318,7 +318,7 @@ TEST(StampTest, AcceptsTruncatedLastLine) {
   const auto text = table(kHeader, 90, [](int k) { return row(k, k / 30.0); }) + "3.0000000,1.02";
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 90);
-  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("r.csv:92"), HasSubstr("breaks off"))));
+  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("r.csv:92"), HasSubstr("is truncated"))));
 }
 TEST(StampTest, AcceptsRepeatedRows) {
   const auto text = table(kHeader, 90, [](int k) {

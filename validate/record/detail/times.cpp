@@ -307,7 +307,7 @@ bool report_repeated_times(const Rows& rows, SampleFaults& faults) {
                   "the times have too few digits: they are rounded to {:.3g} s, {:.0f} samples share one",
                   rows.resolution, std::ceil(static_cast<double>(t.size()) / apart))
             : "the times have too few digits",
-        "export the record from its source again; a spreadsheet rounds times to what it shows (mm:ss.0, "
+        "export the record from its source again; a spreadsheet rounds times to the displayed digits (mm:ss.0, "
         "1.77E+12): give the column a format with milliseconds before you save it");
   else
     faults.add(
