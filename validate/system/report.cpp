@@ -262,6 +262,7 @@ std::string system_html(const SystemCase& s, const SystemComparison& c, const re
                            {c.adequacy.sentence + " " + c.culprit},
                            c.adequacy.adequate ? report::Tone::good : report::Tone::bad});
   page.add(chips(s, c));
+  page.note("! exceeds the noise limit of a bin; ✓ within it.");
   if (!c.ranking.empty()) {
     const std::size_t worst = c.ranking.front().terminal;
     page.subsection(s.terminals[worst].name + ", " + place_of(s, s.terminals[worst]));

@@ -334,7 +334,7 @@ struct Movement {
   Threshold error{
       "movement.error", 25, "% of movement",
       "RMS of modelled - measured over RMS of the measured deviation from before the event, of P and of "
-      "Q after the last switching (Swingbank's own; MOD-027 asks for a guideline and sets no figure)"};
+      "Q after the last switching (Swingbank's own; MOD-026-2 asks for a guideline and sets no figure)"};
   /// Least ratio of movement to noise for this limit [-].
   Threshold over_noise{
       "movement.over_noise", 5, "noise",
