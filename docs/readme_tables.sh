@@ -2,10 +2,10 @@
 # Writes the tables of dependencies and files into each module's README.md.
 #   bash docs/readme_tables.sh [--check]
 #     --check  changes nothing; exits with 1 and names each README that is out of date
-# Between `<!-- uses -->` and `<!-- end of uses -->`: the modules that the module names in its CMakeLists.txt. Between
-# `<!-- files -->` and `<!-- end of files -->`: one row per file, for each header and each source without a header of its
-# name. A row holds the first sentence of the file's head comment, or an effect's name and title. The order of rows
-# is kept, because it is the order of the data flow; a new file comes last, and a deleted one is removed.
+# Between `<!-- uses -->` and `<!-- end of uses -->`: the modules that the module names in its CMakeLists.txt.
+# Between `<!-- files -->` and `<!-- end of files -->`: one row per file, for each header and for each source without a
+# header of its name. A row contains the first sentence of the file's head comment, or an effect's name and title. The
+# order of rows is kept, because it is the order of the data flow; a new file comes last, and a deleted one is removed.
 # shellcheck disable=SC2016 # backticks are Markdown here
 set -euo pipefail
 shopt -s nullglob
@@ -52,7 +52,7 @@ files() {
   done
 }
 
-# says: after each path on its input a tab, and name and title of an effect, else the first sentence of the head comment.
+# says: appends to each input path a tab, and name and title of an effect, else the first sentence of the head comment.
 # A full stop ends it unless it stands in parentheses or behind an initial.
 says() {
   awk '

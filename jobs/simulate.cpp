@@ -383,10 +383,9 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--raw-version", o.raw_version, "version of a .raw file without a version number, 23 to 35");
   line.add("--law", o.user_models,
            "file (.toml) of a user-defined model that --attach may use; may be repeated");
-  line.add(
-          "--convention", o.convention,
-          "psse: governors set power; andes: torque; both neglect the speed term (omega = 1 pu) in the stator "
-          "voltage equations (configs/README.md)")
+  line.add("--convention", o.convention,
+           "psse: governors set power; andes: torque; both neglect the speed term (omega = 1 pu) in the "
+           "stator voltage equations (configs/README.md)")
       .one_of({"psse", "andes"})
       .shows_default();
   line.group("Power flow");
@@ -401,7 +400,7 @@ int run(CommandLine& line, int argc, char** argv) {
       .shows_default();
   line.add(
           "--switched-shunts", o.switched_shunts,
-          "fixed: switched shunts stay at BINIT; step: those with discrete steps regulate their voltage in the power flow")
+          "fixed: switched shunts stay at BINIT; step: discrete ones regulate their voltage in the power flow")
       .one_of({"fixed", "step"})
       .shows_default();
   line.add_choice("--devices", o.devices, grid::kDeviceWords,
@@ -413,10 +412,8 @@ int run(CommandLine& line, int argc, char** argv) {
       .one_of({"impedance", "raw"})
       .shows_default();
   line.add("--load", o.loads, "BUS[/ID]:EFFECT[:PARAM=VALUE,...], a model for one load; may be repeated");
-  line.add_flag(
-      "--widen-limits", o.widen_limits,
-      "where the operating point lies beyond a limit of a control, extend the limit to the operating point "
-      "and report it");
+  line.add_flag("--widen-limits", o.widen_limits,
+                "extend control limits that exclude the operating point to this point, and report them");
   line.group("Models");
   line.add_choice("--complete-records", o.complete_records, grid::kLackingWords,
                   "complete records of the .dyr that are shorter than their model with these values and truncate "
@@ -439,10 +436,9 @@ int run(CommandLine& line, int argc, char** argv) {
   line.group("Events");
   line.add("--fault", o.event.faults,
            "BUS:T_ON:T_OFF[:R:X], bolted without R and X [s, pu on the network's base]; may be repeated");
-  line.add(
-          "--fault-type", o.event.fault_type,
-          "3ph; slg: line to ground, ll: line to line, llg: double line to ground. With slg, ll and llg, R and X "
-          "are the fault impedance; the negative- and zero-sequence equivalents are added")
+  line.add("--fault-type", o.event.fault_type,
+           "3ph; slg: line to ground; ll: line to line; llg: double line to ground. With slg, ll and llg, R "
+           "and X are the fault impedance; the negative- and zero-sequence equivalents are added")
       .one_of({"3ph", "slg", "ll", "llg"})
       .shows_default();
   line.add("--z0", o.event.z0,
@@ -451,10 +447,9 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--trip", o.event.trips,
            "FROM:TO:CKT:T_OPEN[:T_CLOSE] [s]; of a three-winding transformer this opens the winding at FROM, "
            "FROM:TO:THIRD:CKT:T_OPEN[:T_CLOSE] all windings; may be repeated");
-  line.add(
-      "--trip-generator", o.event.generator_trips,
-      "BUS[/ID]:T[:PART], trips the generator permanently at T [s]; PART: fraction of the units that trip "
-      "(default 1: all); may be repeated");
+  line.add("--trip-generator", o.event.generator_trips,
+           "BUS[/ID]:T[:PART], trips the generator permanently at T [s]; PART: fraction of its units "
+           "(default 1: all); may be repeated");
   line.add("--load-step", o.event.load_steps,
            "BUS:P:Q:T_ON[:T_OFF] [MW, Mvar, s], consumption added as constant admittance; may be "
            "repeated");
