@@ -45,10 +45,10 @@ OutputFolder::OutputFolder(fs::path folder, std::string command, const std::vect
   std::error_code none;
   created_ = !fs::exists(folder_, none);
   make_folder(folder_);
-  lock_.emplace(folder_ / kLockFile,
-                LockWords{"another command works in the output folder", "--out " + folder_.string(),
-                          "wait for it, or give another folder"},
-                std::chrono::milliseconds(0));
+  lock_.emplace(
+      folder_ / kLockFile,
+      LockWords{"output folder in use", "--out " + folder_.string(), "wait for it, or give another folder"},
+      std::chrono::milliseconds(0));
   earlier_ = read_list(list_file(folder_, command_));  // again: the previous holder may have changed it
 }
 

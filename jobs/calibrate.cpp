@@ -252,8 +252,7 @@ int run(Arguments& a, plant::PlantModel& model) {
                 .parameters = fitted,
                 .json = std::move(result),
                 .notes = notes,
-                .noise_alone =
-                    std::ranges::all_of(c.events, [](const auto& e) { return e.is_noise(); })});
+                .noise_alone = std::ranges::all_of(c.events, [](const auto& e) { return e.is_noise(); })});
 }
 
 int run_interruptible(Arguments& a) {

@@ -28,7 +28,7 @@ constexpr double kLongerThanItsProgram = 60.0;  ///< time from a plant's limit t
 std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
   make_folder(folder);
   return std::make_unique<RunLock>(
-      folder / ".lock", LockWords{"a second run", folder.string(), "wait for it, or give another --out"},
+      folder / ".lock", LockWords{"folder in use", folder.string(), "wait for it, or give another --out"},
       std::chrono::milliseconds(0));
 }
 

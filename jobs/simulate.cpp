@@ -415,9 +415,10 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add_flag("--widen-limits", o.widen_limits,
                 "extend control limits that exclude the operating point to this point, and report them");
   line.group("Models");
-  line.add_choice("--complete-records", o.complete_records, grid::kLackingWords,
-                  "complete records of the .dyr that are shorter than their model with these values and truncate "
-                  "longer ones; each is listed in a warning");
+  line.add_choice(
+      "--complete-records", o.complete_records, grid::kLackingWords,
+      "complete records of the .dyr that are shorter than their model with these values and truncate "
+      "longer ones; each is listed in a warning");
   line.add_flag("--drop-refused", o.drop_refused,
                 "ignore records of the .dyr with inadmissible parameter values, and network equipment with a "
                 "repeated id or at a missing bus; each is listed in a warning");

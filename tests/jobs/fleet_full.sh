@@ -79,4 +79,4 @@ echo 'a file' >"$work/file"
 refuses "a file in place of the folder" "$work/file" "$swingbank" diagnose --fleet "$work/fleet.toml" --out "$work/file"
 exec 9>"$work/ranks/.lock"
 flock -n 9
-refuses "a second run" 'a second run' "$swingbank" diagnose --fleet "$work/fleet.toml" --out "$work/ranks"
+refuses "a second run" 'folder in use' "$swingbank" diagnose --fleet "$work/fleet.toml" --out "$work/ranks"

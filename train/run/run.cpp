@@ -318,7 +318,7 @@ bool begin(const PreparedRun& run, const std::filesystem::path& result, std::opt
   const std::chrono::milliseconds patience =
       run.recipe.noise_levels ? std::chrono::hours(12) : run.request.patience;
   lock.emplace(locks / (training_name(run.request) + ".lock"),
-               LockWords{"a second run", result.string(), "wait for it to end, or choose another --out"},
+               LockWords{"result file in use", result.string(), "wait for it to end, or choose another --out"},
                patience);
   return !already_done(result, run.identity);
 }

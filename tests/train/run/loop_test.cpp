@@ -282,7 +282,7 @@ TEST(Training, ASecondProcessAtTheSameRunIsRefused) {
       FAIL() << "went on";
     } catch (const InputError& e) {
       const std::string sentence = e.what();
-      EXPECT_NE(sentence.find("a second run at " + (r.out / (run_name(r) + ".json")).string()),
+      EXPECT_NE(sentence.find("result file in use at " + (r.out / (run_name(r) + ".json")).string()),
                 std::string::npos)
           << sentence;
     }
