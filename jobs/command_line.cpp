@@ -97,12 +97,11 @@ struct CommandLine::Parser {
   }
   /// Returns "no positional arguments", or "no positional arguments except …".
   [[nodiscard]] std::string positionals() const {
-    std::string text = "no positional arguments";
-    const std::size_t none = text.size();
+    std::string all = "no positional arguments";
+    const std::size_t none = all.size();
     for (const CLI::Option* option : app.get_options())
-      if (option->get_positional())
-        text += (text.size() == none ? " except " : ", ") + option->get_name(true);
-    return text;
+      if (option->get_positional()) all += (all.size() == none ? " except " : ", ") + option->get_name(true);
+    return all;
   }
   /// Returns an error for each argument that is neither an option nor a value of one, in the order given.
   /// Arguments after an unknown option count as its values.
