@@ -11,9 +11,7 @@ namespace swingbank::sim::effects::measurement_frequency_lag {
 
 struct Model {
   static constexpr std::string_view name = "FREQLAG", title = "low-pass filter of the frequency measurement",
-                                    source =
-                                        "first-order lag by definition; IEEE Std 2800 and relay manuals "
-                                        "filter a frequency in this way";
+                                    source = "first-order lag, as the frequency transducer of DER_A (Trf)";
   static constexpr Slot slot = Slot::measurement;
   static constexpr std::string_view description = R"(
   df --[ 1 / (1 + s T) ]-- df'

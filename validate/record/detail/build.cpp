@@ -276,7 +276,8 @@ void settle_angle(Record& r) {
     r.notes.emplace_back(
         "The record has no angle: it was integrated from the frequency. A measured frequency "
         "shows the angle step at a switching late, smoothed or not at all; the angle steps are "
-        "therefore fitted.");
+        "therefore fitted. If the instrument filters the frequency, the angle lags: effect FREQLAG removes "
+        "the lag.");
     return;
   }
   r.theta.assign(r.t.size(), 0.0);
