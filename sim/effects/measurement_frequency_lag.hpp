@@ -34,6 +34,11 @@ struct Model {
   }
   static std::string_view unphysical(const double*) { return ""; }
   static double angle_lag(const double* p) { return p[lag]; }
+  static double memory(const double* p) {
+    constexpr double kForgotten =
+        36;  // time constants after which a rounding error is left: exp(-36) = 2e-16
+    return kForgotten * p[lag];
+  }
 
   static void measure(const double* p, std::uint64_t, Phasors& phasors) {
     if (p[lag] == 0.0 || phasors.df.empty()) return;
