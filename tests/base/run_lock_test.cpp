@@ -63,7 +63,7 @@ TEST_F(RunLockFile, RefusalNamesTheHolder) {
   const auto first = lock();
   ::unsetenv("SLURM_JOB_ID");
   EXPECT_THAT(refusal(),
-              AllOf(HasSubstr("dataset in use at /data (process " + std::to_string(::getpid()) + " on "),
+              AllOf(HasSubstr("dataset in use at /data (locked by process " + std::to_string(::getpid()) + " on "),
                     HasSubstr(", Slurm job 4711): wait for it")));
 }
 
