@@ -109,7 +109,7 @@ TEST(DatabankDraw, ReportsProgress_WhenTheCountIsUnreachable) {
     draw(c, 2000);
     FAIL() << "nothing thrown";
   } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), HasSubstr(" of 2000 points at genrou.toml"));
+    EXPECT_THAT(e.what(), HasSubstr(" of 2000 samples at genrou.toml"));
     EXPECT_THAT(e.what(), HasSubstr("too close"));
   }
 }

@@ -44,7 +44,7 @@ TEST(ZeroFrameTest, IsInterpolatedLikeALostFrame) {
   EXPECT_NEAR(r.V[150], 1.02 + 1e-3 * std::sin(5.0), 1e-6);
   EXPECT_NEAR(r.P[151], 0.4 + 1e-3 * std::cos(151 / 20.0), 1e-6);
   EXPECT_EQ(std::ranges::count(r.lost, 1), 2);
-  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("2 frames are exactly zero"), HasSubstr("r.csv:152"))));
+  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("2 samples are exactly zero"), HasSubstr("r.csv:152"))));
 }
 TEST(ZeroFrameTest, BoltedFaultStaysMeasured) {
   const Record r = parse_record(frames([](int k) {
@@ -57,7 +57,7 @@ TEST(ZeroFrameTest, BoltedFaultStaysMeasured) {
   EXPECT_THAT(r.lost, IsEmpty());
   EXPECT_EQ(r.V[122], 0);
   EXPECT_THAT(r.notes,
-              Contains(AllOf(HasSubstr("6 frames are exactly zero"), HasSubstr("a fault at the terminals"))));
+              Contains(AllOf(HasSubstr("6 samples are exactly zero"), HasSubstr("a fault at the terminals"))));
 }
 TEST(ZeroFrameTest, LongGapsOfZerosAreRefused) {
   EXPECT_THAT(
