@@ -55,7 +55,7 @@ expect 0 "$whole" "${make[@]}" --repair --out "$work/data"
 
 # The databank reports its progress.
 sed -e "s|\.\./networks|$SWINGBANK_SOURCE/configs/networks|" -e 's/^distance = .*/distance = 1.5/' -e 's/^scale = .*/scale = "scaled"/' "$configs/ieee39_genrou.toml" >"$work/far.toml"
-expect 1 "of 3000 points" "$SWINGBANK_BIN/swingbank-databank" "$work/far.toml" --points 3000
+expect 1 "of 3000 samples" "$SWINGBANK_BIN/swingbank-databank" "$work/far.toml" --points 3000
 expect 0 "accepted" "$SWINGBANK_BIN/swingbank-databank" "$configs/ieee39_genrou.toml" --points 100 --out "$work/bank.csv"
 [ "$(wc -l <"$work/bank.csv")" = 101 ] || fail "bank.csv has not a heading and 100 points"
 
