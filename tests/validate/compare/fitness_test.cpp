@@ -91,7 +91,7 @@ TEST(Fitness, MissingResponse_FailsByItsMovement_WhenEveryLimitOfMvaHolds) {
   EXPECT_TRUE(most.fit) << most.sentence;
   EXPECT_NEAR(most.movements[0].error, 20, 1e-9);
   EXPECT_NEAR(most.movements[0].share, 80, 1e-9);
-  EXPECT_THAT(report::padded(movement_table(most)), HasSubstr("80 %"));
+  EXPECT_THAT(report::padded(movement_table(most)), HasSubstr("0.80"));
   EXPECT_EQ(fitness_json(most)["movement"][0]["limit_percent"], 25);
 }
 TEST(Fitness, Movement_IsNotJudged_BelowNoiseOrMinimumSize) {
