@@ -138,10 +138,10 @@ TEST(DocumentTest, QuotesMarkdownAndCsv) {
   EXPECT_EQ(markdown(table), "| a | b |\n| --- | ---: |\n| x\\|y | 1,5 |\n| \"q\" | 2 |\n");
   EXPECT_EQ(csv(table), "a,b\nx|y,\"1,5\"\n\"\"\"q\"\"\",2\n");
 }
-TEST(DocumentTest, BarsLabelMissingValues) {
+TEST(DocumentTest, BarsLabelValuesThatAreNotFinite) {
   Document page{"a", "b"};
   page.add(Bars{"t", "", 1.0, "line", {{"one", 0.5}, {"two", std::nan("")}}});
-  EXPECT_NE(html(page).find("missing"), std::string::npos);
+  EXPECT_NE(html(page).find("not finite"), std::string::npos);
 }
 
 }  // namespace
