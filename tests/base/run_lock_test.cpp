@@ -62,9 +62,9 @@ TEST_F(RunLockFile, RefusalNamesTheHolder) {
   ::setenv("SLURM_JOB_ID", "4711", 1);
   const auto first = lock();
   ::unsetenv("SLURM_JOB_ID");
-  EXPECT_THAT(refusal(),
-              AllOf(HasSubstr("dataset in use at /data (locked by process " + std::to_string(::getpid()) + " on "),
-                    HasSubstr(", Slurm job 4711): wait for it")));
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("dataset in use at /data (locked by process " +
+                                         std::to_string(::getpid()) + " on "),
+                               HasSubstr(", Slurm job 4711): wait for it")));
 }
 
 TEST_F(RunLockFile, IsReleasedWithItsHolderAndTheFileRemains) {

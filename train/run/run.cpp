@@ -317,9 +317,10 @@ bool begin(const PreparedRun& run, const std::filesystem::path& result, std::opt
   // Runs of other noise levels wait for their common network.
   const std::chrono::milliseconds patience =
       run.recipe.noise_levels ? std::chrono::hours(12) : run.request.patience;
-  lock.emplace(locks / (training_name(run.request) + ".lock"),
-               LockWords{"result file in use", result.string(), "wait for it to end, or choose another --out"},
-               patience);
+  lock.emplace(
+      locks / (training_name(run.request) + ".lock"),
+      LockWords{"result file in use", result.string(), "wait for it to end, or choose another --out"},
+      patience);
   return !already_done(result, run.identity);
 }
 

@@ -56,8 +56,8 @@ TEST(ZeroFrameTest, BoltedFaultStaysMeasured) {
                                 "r.csv", kTestBase);
   EXPECT_THAT(r.lost, IsEmpty());
   EXPECT_EQ(r.V[122], 0);
-  EXPECT_THAT(r.notes,
-              Contains(AllOf(HasSubstr("6 samples are exactly zero"), HasSubstr("a fault at the terminals"))));
+  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("6 samples are exactly zero"),
+                                      HasSubstr("a fault at the terminals"))));
 }
 TEST(ZeroFrameTest, LongGapsOfZerosAreRefused) {
   EXPECT_THAT(
