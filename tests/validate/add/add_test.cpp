@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <utility>
+
 #include "sim/library/library.hpp"
 #include "tests/validate/fit/cramer_rao.hpp"
 #include "tests/validate/playin/instrument_example.hpp"
@@ -174,6 +177,31 @@ TEST(Add, FindsMissingInstrument) {
   EXPECT_LE(a.parameters[1].low, -0.04);
   EXPECT_GE(a.parameters[1].high, -0.04);
   EXPECT_LT(a.parameters[1].error, 0.01);
+}
+
+/// Records without an angle, whose frequency passed a first-order filter.
+TEST(Add, RemovesTheLagOfTheFrequency) {
+  constexpr double kLag = 0.1;  // [s]
+  const plant::PlantModel model = example(true);
+  auto lagged = records(model, 3);
+  for (record::Record& r : lagged) {
+    const double left = std::exp(-r.step() / kLag), after = 1 - (1 - left) * kLag / r.step();
+    double y = r.f.front(), before = y;
+    for (double& f : r.f) {
+      y = left * y + (1 - left) * before + (f - before) * after;
+      before = std::exchange(f, y);
+    }
+    r.theta = record::angle_of_frequency(r);
+    r.angle = record::AngleSource::integrated;
+  }
+  AddOptions options = power_only();
+  options.calibrate.held_out = {"avr_ev3.csv"};
+  const Addition a = add_effect(model, find_hypothesis(model, "FREQLAG"), lagged, options);
+  EXPECT_TRUE(a.earns) << a.sentence;
+  EXPECT_GT(a.evidence, 1000);
+  ASSERT_EQ(a.own, 1);
+  EXPECT_NEAR(a.parameters[0].value, kLag, 3 * a.parameters[0].error);
+  EXPECT_LT(a.parameters[0].error, 0.1 * kLag);
 }
 
 TEST(Add, ScreensEffectsThroughTheInstruments) {
