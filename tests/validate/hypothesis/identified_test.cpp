@@ -59,7 +59,7 @@ TEST_F(IdentifiedExciter, ReachesTheOptimumFoundFromTheTruth) {
   // A hypothesis far behind the best is not fitted and reports that.
   EXPECT_FALSE(all.back().fitted);
   EXPECT_GT(all.back().behind, 1000);
-  EXPECT_NE(all.back().why_not.find("than with SEXS"), std::string::npos) << all.back().why_not;
+  EXPECT_NE(all.back().why_not.find("than that of SEXS"), std::string::npos) << all.back().why_not;
 }
 
 /// A phase error of an instrument transformer is found beside the exciter; without an error none is found.
