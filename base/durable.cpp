@@ -27,7 +27,7 @@ std::string remedy_for(int error) {
   switch (error) {
     case ENOSPC:
     case EDQUOT:
-      return "free some space or choose another folder, then run the command again: it continues";
+      return "free some space or choose another folder, then run the command again";
     case EACCES:
     case EPERM:
     case EROFS:

@@ -49,7 +49,7 @@ diff "$work/expected" "$work/words" || fail "an unexpected argument is reported 
 "$swingbank" compare --help >"$work/help"
 grep -q -- '--records,--record TEXT \.\.\.' "$work/help" || fail "the help of --records has no dots"
 ! grep -q -- '--switch TEXT \.\.\.' "$work/help" || fail "the help of --switch has dots, but it takes one value at a time"
-misused "two values of --switch" "unexpected word at '2.1'" "$swingbank" compare --model a.toml --switch 2.0 2.1 --records r.csv
+misused "two values of --switch" "unexpected argument '2.1'" "$swingbank" compare --model a.toml --switch 2.0 2.1 --records r.csv
 refuses "two uses of --switch" "a.toml" "$swingbank" compare --model a.toml --records r.csv --switch 2.0 --switch 2.1
 
 # Without /proc the commands are found by the path of the started program.

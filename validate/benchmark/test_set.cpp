@@ -63,7 +63,7 @@ void check_size(Config& c, const std::string& at, const Test& t) {
 void check_times(Config& c, const std::string& at, const Test& t) {
   if (t.end && !(*t.end > t.event))
     c.problem(at + "end", fmt::format("end = {:g} s with event = {:g} s", *t.end, t.event),
-              "the end is after the beginning", "give end > event, or omit it for a permanent change");
+              "the end must be after the event", "give end > event, or omit it for a permanent change");
   if (!t.end && record_of(t.kind).has_end)
     c.problem(at + "end", "no end", fmt::format("a {} has an end", kind_name(t.kind)), "add end = … [s]");
   if (t.during && !t.end)

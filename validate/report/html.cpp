@@ -54,8 +54,10 @@ std::string column(const std::vector<double>& values) {
 /// follows the zoom.
 std::string shown_part(const Curves& c) {
   if (!c.view || c.x.empty() || (c.view->first <= c.x.front() && c.view->second >= c.x.back())) return {};
-  return fmt::format("t = {:.4g} to {:.4g} s of {:.4g} to {:.4g} s", c.view->first, c.view->second,
-                     c.x.front(), c.x.back());
+  const double rounding = 1e-9 * (c.x.back() - c.x.front());  // of times that were subtracted
+  const double begin = std::abs(c.x.front()) < rounding ? 0.0 : c.x.front();
+  return fmt::format("t = {:.4g} to {:.4g} s of {:.4g} to {:.4g} s", c.view->first, c.view->second, begin,
+                     c.x.back());
 }
 const char* tone_class(Tone tone) {
   return tone == Tone::good ? "good" : tone == Tone::warn ? "warn" : tone == Tone::bad ? "bad" : "found";

@@ -140,7 +140,7 @@ TEST(Nameplate, ReferenceManualListsEveryField) {
   manual << in.rdbuf();
   const auto row = [](const NameplateField& f, const std::string& table) {
     const char* need = f.need == NameplateField::Need::required      ? "yes"
-                       : f.need == NameplateField::Need::of_controls ? "of a control"
+                       : f.need == NameplateField::Need::of_controls ? "for controls only"
                                                                      : "no";
     return "| `" + table + "` | `" + std::string(f.key) + "` | " + std::string(f.unit) +
            (f.unit.empty() ? "| " : " | ") + std::string(f.meaning) + " | " + need + " |";
