@@ -51,7 +51,7 @@ void measure(std::span<const Block> chain, std::uint64_t seed, Phasors& phasors)
 double memory(std::span<const Block> chain) {
   double sum = 0.0;
   for (const Block& block : chain)
-    if (block.effect->memory) sum += block.effect->memory(block.p.data());
+    if (block.effect->memory && !block.effect->angle_lag) sum += block.effect->memory(block.p.data());
   return sum;
 }
 

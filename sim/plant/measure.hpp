@@ -28,7 +28,8 @@ TerminalRecord terminal_of(const Phasors& phasors, double first_theta);
 /// Applies the instruments of `chain` in order. Block k has its own random numbers, derived from `seed` and
 /// k.
 void measure(std::span<const Block> chain, std::uint64_t seed, Phasors& phasors);
-/// Returns how far an output sample of the whole chain depends on input to either side [s].
+/// Returns how far V and I after the whole chain depend on those before it, to either side [s]. An instrument
+/// that only delays the frequency (Effect::angle_lag) does not count.
 double memory(std::span<const Block> chain);
 
 /// Reads "EFFECT[:PARAM=VALUE,...]" for the measurement slot, with the effects of `library`. Errors are added

@@ -25,15 +25,6 @@ double angle_lag(const std::vector<sim::plant::Block>& chain) {
   return lag;
 }
 
-/// Returns how far V and I after the chain depend on those before it, to either side [s]. An instrument whose
-/// lag of the angle is removed leaves them unchanged.
-double phasor_memory(const std::vector<sim::plant::Block>& chain) {
-  double memory = 0;
-  for (const sim::plant::Block& b : chain)
-    if (b.effect->memory && !b.effect->angle_lag) memory += b.effect->memory(b.p.data());
-  return memory;
-}
-
 /// Gain of the chain of instruments for constant phasors.
 struct SteadyGain {
   Complex V = 1, I = 1;
@@ -47,7 +38,7 @@ sim::Phasors phasors(const std::vector<Complex>& V, const std::vector<double>& P
 }
 
 SteadyGain steady_gain(const std::vector<sim::plant::Block>& chain, double rate, double frequency) {
-  const auto beside = static_cast<std::size_t>(std::ceil(phasor_memory(chain) * rate)) + 2;
+  const auto beside = static_cast<std::size_t>(std::ceil(sim::plant::memory(chain) * rate)) + 2;
   const std::vector<Complex> one(2 * beside + 1, 1.0);
   sim::Phasors p{rate, frequency, one, one, std::vector<double>(one.size(), 0.0)};
   sim::plant::measure(chain, 1, p);
@@ -96,7 +87,7 @@ class Observed {
       inner_.curve = &*advanced_;
       inner_.start.voltage *= std::polar(1.0, lag * run.start.drift);
     }
-    if (phasor_memory(chain_) > 0) refine(r);
+    if (sim::plant::memory(chain_) > 0) refine(r);
   }
   Response run() {
     Response r = simulate_playback(inner_, parameters_);
@@ -157,7 +148,7 @@ class Observed {
     const SteadyGain gain =
         steady_gain(moved.measurements, 1 / run_.record->step(), run_.conventions.frequency);
     return gain.V == gain_.V && gain.I == gain_.I && angle_lag(moved.measurements) == angle_lag(chain_) &&
-           (phasor_memory(moved.measurements) > 0) == (stride_ > 1);
+           (sim::plant::memory(moved.measurements) > 0) == (stride_ > 1);
   }
   [[nodiscard]] Response::Sensitivity along_both(const SensitivityParameter& d,
                                                  const sim::plant::Plant& above,

@@ -37,7 +37,9 @@ TEST(VoltageCurveTest, IsExactForCubicsUpToTheSteps) {
     EXPECT_NEAR(curve(1, t).real(), 0.5 + t * t / 20, 1e-13);  // extrapolated back to 1.0
   for (const double t : {1.5, 1.51, 2.99}) EXPECT_NEAR(curve(2, t).real(), 0.9 + t / 50, 1e-13);
 }
-/// The angle of a lagged frequency, theta = a sin(w t), advanced by T: a sin(w t) + T a w cos(w t).
+/// The angle of a lagged frequency, theta = a sin(w t), advanced by T: a sin(w t) + T a w cos(w t). The slope
+/// at the spline's ends, the worst knots, errs by about a w^4 h^3 / 4 at knots h = 0.05 s apart, here 8e-4
+/// rad times 1 / T.
 TEST(VoltageCurveTest, AdvancesTheAngle) {
   constexpr double kLead = 0.1, kA = 0.4, kW = 5.0;
   record::Record r = stepped();
@@ -47,8 +49,8 @@ TEST(VoltageCurveTest, AdvancesTheAngle) {
   for (const auto& [segment, t] :
        {std::pair(0, 0.0), std::pair(0, 0.55), std::pair(1, 1.25), std::pair(2, 2.0), std::pair(2, 3.0)}) {
     const Complex v = curve(segment, t);
-    EXPECT_NEAR(std::abs(v), user_model(t == 1.5 ? 1.5 + 1e-9 : t), 2e-4) << t;
-    EXPECT_NEAR(std::arg(v), kA * std::sin(kW * t) + kLead * kA * kW * std::cos(kW * t), 2e-3) << t;
+    EXPECT_NEAR(std::abs(v), user_model(t), 1e-12) << t;
+    EXPECT_NEAR(std::arg(v), kA * std::sin(kW * t) + kLead * kA * kW * std::cos(kW * t), 8e-4) << t;
   }
 }
 TEST(VoltageCurveTest, ShortSegmentsUseLowerOrder) {
