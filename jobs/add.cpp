@@ -1,5 +1,5 @@
-// swingbank add: adds a physical effect (or user-defined model) to a plant model, fits it, and shows every
-// event before and after. With --retrain, also shows the effect's influence on a trained network.
+// swingbank add: adds physical effects (or user-defined models) to a plant model, fits them together, and
+// shows every event before and after. With --retrain, also shows the effect's influence on a trained network.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,8 @@ constexpr const char *kModel = "model.toml", *kDyr = "model.dyr", *kRetrained = 
 
 struct Arguments {
   jobs::AnalysisOptions of{"added"};
-  std::string effect, truth, command;
+  std::vector<std::string> effects;
+  std::string truth, command;
   bool until_adequate = false, retrain = false;
   nlohmann::json metadata;  ///< metadata of the records
   add::AddOptions options;
@@ -43,9 +44,11 @@ void say_on(compare::CommandPage& page, const add::Addition& added) {
   page.use = {true};
   for (const auto& e : added.events)
     if (!e.score.seen) page.use.held_out.push_back(e.score.record);
-  page.tried.push_back(fmt::format("{}: evidence {:.1f}, required {:g}; {}.", added.hypothesis.what,
-                                   added.evidence, thresholds::addition.strong.value,
-                                   added.earns ? "accepted" : "not accepted"));
+  for (const auto& e : added.effects)
+    page.tried.push_back(fmt::format("{}: evidence{} {:.1f}, required {:g}; {}.", e.what,
+                                     added.effects.size() > 1 ? " beside the others" : "", e.evidence,
+                                     thresholds::addition.strong.value,
+                                     added.earns ? "accepted" : "not accepted"));
 }
 /// Returns "added" and what remains in the events.
 std::string added_text(bool adequate, const compare::CommandPage& page, const compare::Played& played) {
@@ -61,9 +64,8 @@ compare::CommandPage page_of(const add::Addition& added, const std::vector<compa
   page.complete = added.adequate && added.earns;
   page.noise_alone = is_noise(added);
   page.sentence = added.sentence;
-  page.headline = fmt::format(
-      "{} {}", added.hypothesis.name,
-      added.earns ? added_text(added.adequate, page, played.back()) : "does not improve the model");
+  page.headline = fmt::format("{} {}", added.hypothesis.name,
+                              added.earns ? added_text(added.adequate, page, played.back()) : "not accepted");
   say_on(page, added);
   return page;
 }
@@ -72,7 +74,9 @@ compare::CommandPage page_of(const add::Completion& c, const std::vector<compare
   page.complete = c.adequate;
   page.noise_alone = c.added.empty() || is_noise(c.added.back());
   page.sentence = c.sentence;
-  page.headline = fmt::format("{} {} {}", c.added.size(), c.added.size() == 1 ? "effect" : "effects",
+  std::size_t count = 0;
+  for (const auto& one : c.added) count += one.effects.size();
+  page.headline = fmt::format("{} {} {}", count, count == 1 ? "effect" : "effects",
                               added_text(c.adequate, page, played.back()));
   for (const auto& one : c.added) say_on(page, one);
   for (const auto& r : c.removed)
@@ -108,12 +112,17 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
 /// Throws InputError if options contradict each other; called before any computation.
 void check_options(const Arguments& a) {
   Problems problems;
-  if (a.effect.empty() != a.until_adequate)
-    problems.add(a.effect.empty() ? "no effect" : "an effect together with --until-adequate", "swingbank add",
-                 "the effect is either named or searched for", "give one of EFFECT and --until-adequate");
+  if (a.effects.empty() != a.until_adequate)
+    problems.add(a.effects.empty() ? "no effect" : "an effect together with --until-adequate",
+                 "swingbank add", "effects are either named or searched for",
+                 "give either EFFECT or --until-adequate");
   if (a.retrain && a.until_adequate)
     problems.add("--retrain together with --until-adequate", "swingbank add",
                  "networks are trained for one effect", "name the effect");
+  if (a.retrain && a.effects.size() > 1)
+    problems.add("--retrain together with several effects", "swingbank add",
+                 "two networks show the influence of one effect",
+                 "add the other effects first, and retrain with the completed model");
   if (a.retrain && a.options.calibrate.held_out.empty())
     problems.add("no event held out", "--retrain", "networks are judged on held-out events",
                  "hold out at least one with --hold-out");
@@ -180,7 +189,7 @@ int run(Arguments& a, plant::PlantModel& model) {
           compare::complete_text(c.adequate, terminal_report(c)), played, page_of(c, played));
     return played.back().fitness.exit_code(c.adequate);
   }
-  add::Addition done = add::add_effect(model, add::find_hypothesis(model, a.effect), records, a.options);
+  add::Addition done = add::add_effects(model, a.effects, records, a.options);
   a.fitted = done.with;
   a.of.keep_user_models(done.model);
   const bool complete = done.adequate && done.earns;
@@ -203,14 +212,15 @@ int run_interruptible(Arguments& a) {
 void declare(jobs::CommandLine& line, Arguments& a) {
   line.group("Input");
   line.add(
-      "effect", a.effect,
-      "effect, user-defined model or parameter group (SEXS, GENROU:S10,S12); 'swingbank effects' lists them");
+      "effect", a.effects,
+      "effects, user-defined models or parameter groups (SEXS, GENROU:S10,S12), which are fitted together; "
+      "'swingbank effects' lists them");
   a.of.declare(line, "model.toml, model.dyr, report.html and add.json");
   a.of.declare_fit(line);
   a.of.declare_hold_out(line);
   line.group("Fit");
   line.add_flag("--until-adequate", a.until_adequate,
-                "diagnose and add, one effect at a time, until the residual is noise");
+                "diagnose and add what is found, until the residual is noise");
   line.group("Network");
   line.add_flag("--retrain", a.retrain,
                 "train a network on the plant without and one with the effect, and compare them on these "

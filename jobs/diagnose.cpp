@@ -87,6 +87,8 @@ int run(Command& c) {
       fmt::print("user-defined model: {0} (swingbank add {1} --law {0} adds it)\n", user_model_file.string(),
                  user_model_file.stem().string());
   }
+  if (const std::string next = diagnose::next_command(d, provenance); !c.of.json && !next.empty())
+    fmt::print("next: {}\n", next);
   c.of.judging.print(page);
   if (d.verdict == diagnose::Verdict::interrupted) return kSubmitAgain;
   return played.back().fitness.exit_code(adequate);

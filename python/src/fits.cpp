@@ -180,9 +180,11 @@ py::object calibrate_plant(const Plant& self, const py::object& records, const F
   return sparse ? fitted(calibrate::wrong_parameters) : fitted(calibrate::calibrate);
 }
 
-std::shared_ptr<Addition> add_to_plant(const Plant& self, const std::string& effect,
-                                       const py::object& records, const FitArguments& arguments,
-                                       const py::object& progress) {
+/// Name of an effect, or names of several that are added together.
+using Effects = std::variant<std::string, std::vector<std::string>>;
+
+std::shared_ptr<Addition> add_to_plant(const Plant& self, const Effects& effects, const py::object& records,
+                                       const FitArguments& arguments, const py::object& progress) {
   const auto samples = samples_of(records_of(self, records), false);
   const auto callback = std::make_shared<Callback>(progress);
   return without_lock(
@@ -190,8 +192,9 @@ std::shared_ptr<Addition> add_to_plant(const Plant& self, const std::string& eff
         const Plant model = plant::as_submitted(self);
         add::AddOptions options;
         options.calibrate = options_of(arguments, callback);
-        return std::make_shared<Addition>(
-            add::add_effect(model, add::find_hypothesis(model, effect), samples, options));
+        const auto* one = std::get_if<std::string>(&effects);
+        const auto names = one ? std::vector{*one} : std::get<std::vector<std::string>>(effects);
+        return std::make_shared<Addition>(add::add_effects(model, names, samples, options));
       },
       {callback});
 }
@@ -223,7 +226,7 @@ void bind_fits(py::module_& module, PlantClass& of) {
         "Ctrl-C, or an exception of `progress`, ends the fit.")
       .def(
           "add",
-          [](const Plant& self, const std::string& effect, const py::object& records,
+          [](const Plant& self, const Effects& effect, const py::object& records,
              const std::vector<std::string>& hold_out, double prior_sd, bool power_only,
              const py::object& progress) {
             return add_to_plant(self, effect, records, {hold_out, {}, prior_sd, power_only}, progress);
@@ -231,7 +234,8 @@ void bind_fits(py::module_& module, PlantClass& of) {
           py::arg("effect"), py::arg("records"), py::kw_only(),
           py::arg("hold_out") = std::vector<std::string>{}, py::arg("prior_sd") = prior,
           py::arg("power_only") = false, py::arg("progress") = py::none(),
-          "Adds an effect (\"SEXS\", \"GENROU:S10,S12\") and fits it, as `swingbank add` does.\n\n"
+          "Adds an effect (\"SEXS\", \"GENROU:S10,S12\"), or a list of effects that are fitted together, as\n"
+          "`swingbank add` does.\n\n"
           "Arguments as for `calibrate`.");
 }
 

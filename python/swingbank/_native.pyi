@@ -72,7 +72,7 @@ class Plant:
     def calibrate(self, records: Records, *, hold_out: Sequence[str] = ..., fix: Sequence[str] = ...,
                   prior_sd: float = ..., power_only: bool = ..., fewest: Literal[True],
                   progress: Optional[Progress] = ...) -> ParameterSelection: ...
-    def add(self, effect: str, records: Records, *, hold_out: Sequence[str] = ..., prior_sd: float = ...,
+    def add(self, effect: str | Sequence[str], records: Records, *, hold_out: Sequence[str] = ..., prior_sd: float = ...,
             power_only: bool = ..., progress: Optional[Progress] = ...) -> Addition: ...
     def diagnose(self, records: Records, *, prior_sd: float = ..., power_only: bool = ..., threads: int = ...,
                  progress: Optional[Progress] = ...,

@@ -1,6 +1,6 @@
 #pragma once
-// Addition of one effect to a model: joint fit to the seen events, and comparison with the same structure
-// refitted without the effect, on unseen events too.
+// Addition of effects to a model: joint fit to the seen events, and comparison with the same structure
+// refitted without them, on unseen events too.
 #include <functional>
 
 #include "validate/calibrate/calibrate.hpp"
@@ -23,36 +23,49 @@ struct AddedEvent {
   [[nodiscard]] bool improves() const { return score.after < refitted; }
 };
 
+/// One of the effects that are added together.
+struct AddedEffect {
+  std::string name;     ///< "SEXS"
+  std::string what;     ///< "exciter SEXS (simplified excitation system)"
+  double evidence = 0;  ///< Addition::evidence over the other effects alone, refitted
+};
+
 /// Result of an addition.
 struct Addition {
-  hypothesis::Hypothesis hypothesis;  ///< the added effect with its free parameters
+  hypothesis::Hypothesis hypothesis;  ///< the added effects with their free parameters
+  std::vector<AddedEffect> effects;   ///< sorted by name
   plant::PlantModel model;            ///< with the effect and the fitted values
-  /// All free parameters, those of the effect first; from calibrate if the residual is noise.
+  /// All free parameters, those of the effects first; from calibrate if the residual is noise.
   std::vector<fit::FittedParameter> parameters;
-  int own = 0;                     ///< number of parameters of the effect
+  int own = 0;                     ///< number of parameters of the effects
   std::vector<AddedEvent> events;  ///< scores of all events, in the order given
-  /// Difference of criterion(), without minus with the effect, over the seen events; compared with
-  /// thresholds::addition.strong.
+  /// Difference of criterion(), without minus with all effects, over the seen events.
   double evidence = 0;
-  bool earns = false;         ///< the evidence is very strong, and no unseen event is worse with the effect
-  bool adequate = false;      ///< the residual is noise in every event
-  thresholds::Ruling ruling;  ///< the criterion that decided `adequate`
-  std::string sentence;       ///< result in words
+  /// The evidence of each effect exceeds thresholds::addition.strong, and no unseen event is worse with them.
+  bool earns = false;
+  bool adequate = false;           ///< the residual is noise in every event
+  thresholds::Ruling ruling;       ///< the criterion that decided `adequate`
+  std::string sentence;            ///< result in words
   noise::WhitenedEvents prepared;  ///< the events with their noise model
   fit::Fit without, with;          ///< fits to the seen events without and with the effect
   double seconds = 0;              ///< processing time [s]
+  /// Returns the names of the effects: "FREQLAG + SEXS".
+  [[nodiscard]] std::string name() const;
   /// Returns the scores of `events`.
   [[nodiscard]] std::vector<calibrate::EventScore> scores() const;
 };
 
 /// Returns the hypothesis of that name, ignoring case and blanks. Throws InputError with the effects that can
-/// be added to this plant. The message states whether the slot is occupied or the effect acts at given times
-/// of one event only.
-hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name);
+/// be added to this plant. The message states whether the slot is occupied, the effect acts at given times
+/// of one event only, or the records cannot show it.
+hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name,
+                                       const std::vector<record::Record>& records);
 
-/// Adds the effect and scores it. Throws InputError as calibrate does.
-Addition add_effect(const plant::PlantModel& model, const hypothesis::Hypothesis& hypothesis,
-                    const std::vector<record::Record>& records, const AddOptions& options);
+/// Adds the effects of these names together and scores them. A text may hold several names: "FREQLAG + SEXS".
+/// The order of the names has no influence on the result. Throws InputError with every name that cannot be
+/// added, and as calibrate does.
+Addition add_effects(const plant::PlantModel& model, const std::vector<std::string>& names,
+                     const std::vector<record::Record>& records, const AddOptions& options);
 
 /// Result of the removal of one control (index into Plant::controls): its evidence with everything else
 /// refitted, and the model without it.
@@ -75,8 +88,8 @@ struct Completion {
   bool adequate = false;         ///< the residual is noise in every event
   std::string sentence;          ///< result in words
 };
-/// Diagnoses the model and adds one effect at a time, at most `most` effects. After each addition, the
-/// effects added before must still earn their place. The held-out events are excluded from diagnoses and
+/// Diagnoses the model and adds what each diagnosis names, in at most `most` additions. After each addition,
+/// the effects added before must still earn their place. The held-out events are excluded from diagnoses and
 /// fits.
 Completion add_until_adequate(const plant::PlantModel& model, const std::vector<record::Record>& records,
                               const AddOptions& options, int most = 4);

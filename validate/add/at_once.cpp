@@ -42,6 +42,7 @@ std::optional<Addition> add_at_once(const plant::PlantModel& model, const hypoth
       model, calibrate::seen_records(records, options.calibrate.held_out), options.calibrate.events);
   Addition a;
   a.hypothesis = hypothesis;
+  a.effects = {{hypothesis.name, hypothesis.what, 0}};
   a.with = fitted(hypothesis, events, options);
   if (!a.with.failed.empty() || !is_noise(a.with, events, options.calibrate.adequate)) return std::nullopt;
   if (options.reached) options.reached(a.with);

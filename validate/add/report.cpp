@@ -15,16 +15,29 @@ namespace {
 
 using nlohmann::json;
 
+std::string verb(const Addition& a) {
+  return fmt::format("{} {}", a.effects.size() > 1 ? "are" : "is", a.earns ? "accepted" : "not accepted");
+}
+
 /// Returns the criterion of this command for the effect, with that of diagnose for comparison.
 std::string judged_by(const Addition& a) {
   const bool any_unseen = std::ranges::any_of(a.events, [](const auto& e) { return !e.score.seen; });
   return fmt::format(
-      "{} is {}. Criterion: evidence above {:g}{}. `diagnose` compares many effects. It requires evidence above "
+      "{} {}. Criterion: evidence of each effect above {:g}{}. `diagnose` compares many effects. It requires evidence above "
       "{:g}, prediction of every held-out event, and more evidence than any inferred input.",
-      a.hypothesis.name, a.earns ? "accepted" : "not accepted", thresholds::addition.strong.value,
+      a.hypothesis.name, verb(a), thresholds::addition.strong.value,
       any_unseen ? ", and no held-out event fits worse, except within noise"
                  : " (there is no held-out event)",
       thresholds::evidence.accepted.value);
+}
+
+/// Returns the evidence of each of several effects; empty for one.
+std::string evidence_beside(const Addition& a) {
+  if (a.effects.size() < 2) return "";
+  std::string text = "Evidence of each effect beside the others:";
+  for (const AddedEffect& e : a.effects)
+    text += fmt::format("{} {} {:.1f}", &e == a.effects.data() ? "" : ",", e.name, e.evidence);
+  return text + ".\n";
 }
 
 report::Table values_table(const Addition& a) {
@@ -77,12 +90,14 @@ std::string terminal_report(const Addition& a) {
          report::padded(values_table(a), 1) +
          fmt::format(
              "\nEvidence, 2 ln(Bayes factor): {:.1f}; above {:g}: very strong (Kass and Raftery 1995).\n{}\n",
-             a.evidence, thresholds::addition.strong.value, judged_by(a));
+             a.evidence, thresholds::addition.strong.value, judged_by(a)) +
+         evidence_beside(a);
 }
 
 json addition_json(const Addition& a) {
   json j = {{"effect", a.hypothesis.name},
             {"what", a.hypothesis.what},
+            {"effects", json::array()},
             {"side", hypothesis::side_name(a.hypothesis.side)},
             {"sentence", a.sentence},
             {"earns_its_place", a.earns},
@@ -95,6 +110,8 @@ json addition_json(const Addition& a) {
             {"seconds", a.seconds},
             {"events", json::array()},
             {"parameters", json::array()}};
+  for (const AddedEffect& e : a.effects)
+    j["effects"].push_back({{"effect", e.name}, {"what", e.what}, {"evidence", e.evidence}});
   for (const auto& e : a.events) {
     json event = calibrate::event_json(e.score);
     event["misfit_refitted_without"] = e.refitted;

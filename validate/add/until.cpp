@@ -11,22 +11,26 @@
 namespace swingbank::validate::add {
 namespace {
 
-/// Returns the effect that the diagnosis names. If it names none because more than one effect is missing,
+/// Returns the effects that the diagnosis names. If it names none because more than one effect is missing,
 /// returns the hypothesis with the most evidence among those that improve every unseen event.
-std::string next_effect(const diagnose::Diagnosis& d) {
-  if (!d.effects.empty()) return d.effects.front();
+std::vector<std::string> next_effects(const diagnose::Diagnosis& d) {
+  if (!d.effects.empty()) return d.effects;
   const auto helps = [](const hypothesis::Judgement& j) {
     return !j.held_out.empty() &&
            std::ranges::all_of(j.held_out, [](const hypothesis::HeldOut& h) { return h.after < h.before; });
   };
   const auto best = std::ranges::find_if(d.ranked, helps);
-  return best == d.ranked.end() ? "" : best->hypothesis.name;
+  if (best == d.ranked.end()) return {};
+  return {best->hypothesis.name};
 }
 
 /// Removes every added control that no longer earns its place.
 void prune(Completion& c, const std::vector<record::Record>& records, const AddOptions& options) {
-  for (std::size_t a = 0; a + 1 < c.added.size(); ++a) {
-    const sim::Effect* effect = c.model.library.find(c.added[a].hypothesis.name);
+  std::vector<std::string> earlier;
+  for (std::size_t a = 0; a + 1 < c.added.size(); ++a)
+    for (const AddedEffect& e : c.added[a].effects) earlier.push_back(e.name);
+  for (const std::string& name : earlier) {
+    const sim::Effect* effect = c.model.library.find(name);
     const auto& controls = c.model.plant.controls;
     const auto at = std::ranges::find(controls, effect, &sim::plant::Block::effect);
     if (effect == nullptr || at == controls.end()) continue;
@@ -53,12 +57,12 @@ void work(const std::vector<record::Record>& records, const AddOptions& options,
       c.sentence = c.added.empty() ? d.sentence : "Adequate with " + names + ": " + d.sentence;
       return;
     }
-    const std::string next = next_effect(d);
+    const std::vector<std::string> next = next_effects(d);
     if (next.empty()) {
       c.sentence = (names.empty() ? "" : "With " + names + ": ") + d.sentence;
       return;
     }
-    Addition a = add_effect(c.model, find_hypothesis(c.model, next), records, options);
+    Addition a = add_effects(c.model, next, records, options);
     if (!a.earns) {
       c.sentence = a.sentence;
       return;

@@ -54,6 +54,10 @@ std::vector<compare::Played> play_models(const plant::PlantModel& model, const D
                                          const thresholds::Acceptance& by,
                                          const compare::CompareOptions& options = {});
 
+/// Returns the command that follows the diagnosis: `add` with the effects that it names, or `calibrate`.
+/// Empty if no effect is named.
+std::string next_command(const Diagnosis& diagnosis, const report::Provenance& provenance);
+
 /// Returns hashes of model and records, version and command line.
 report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Diagnosis& diagnosis,
                                         const std::string& command_line);

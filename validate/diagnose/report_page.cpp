@@ -6,6 +6,7 @@
 
 #include "base/constants.hpp"
 #include "base/json.hpp"
+#include "base/shell_word.hpp"
 #include "sim/plant/parameter_id.hpp"
 #include "validate/compare/error_map_table.hpp"
 #include "validate/compare/first_screen.hpp"
@@ -57,14 +58,6 @@ report::Tone tone(const Diagnosis& d) {
          : d.verdict == Verdict::unexplained ? report::Tone::bad
                                              : report::Tone::found;
 }
-/// Returns the command that follows the diagnosis; empty without one.
-std::string next_command(const Diagnosis& d, const report::Provenance& rows) {
-  if (d.verdict == Verdict::adequate) return compare::next_command(rows, "calibrate");
-  if (d.effects.size() != 1) return {};
-  const bool blank = d.effects.front().find(' ') != std::string::npos;
-  return compare::next_command(rows, "add " + (blank ? "'" + d.effects.front() + "'" : d.effects.front()));
-}
-
 class DiagnosisPage {
  public:
   DiagnosisPage(const plant::PlantModel& model, const Diagnosis& d, const report::Provenance& rows,
@@ -411,6 +404,14 @@ class DiagnosisPage {
 };
 
 }  // namespace
+
+std::string next_command(const Diagnosis& d, const report::Provenance& rows) {
+  if (d.verdict == Verdict::adequate) return compare::next_command(rows, "calibrate");
+  if (d.effects.empty()) return {};
+  std::string command = "add";
+  for (const std::string& effect : d.effects) command += " " + shell_word(effect);
+  return compare::next_command(rows, command);
+}
 
 std::string diagnosis_html(const plant::PlantModel& model, const Diagnosis& diagnosis,
                            const report::Provenance& provenance, const std::vector<compare::Played>& played) {

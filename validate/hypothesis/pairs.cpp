@@ -45,8 +45,8 @@ Judgement begun(const BaseModel& then, Hypothesis h, const fit::Fit& from) {
 }  // namespace
 
 BaseModel after(const BaseModel& base_model, const Judgement& j) {
-  return {base_model.events, j.hypothesis.plant, j.hypothesis.conventions, base_model.library, j.fit,
-          j.hypothesis.free, j.hypothesis.name,  base_model.prior_sd,      base_model.threads};
+  return {base_model.events, j.hypothesis.plant,      j.hypothesis.conventions, base_model.library, j.fit,
+          j.hypothesis.free, full_name(j.hypothesis), base_model.prior_sd,      base_model.threads};
 }
 
 void bring(const BaseModel& base_model, Hypothesis& h) {

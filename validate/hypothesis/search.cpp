@@ -261,17 +261,21 @@ void fit_alone(const BaseModel& base_model, Judgement& j) {
   if (j.fitted) j.gain = fit::gain(base_model.fit, j.fit, fit::criterion);
 }
 
-void try_from(const BaseModel& base_model, const fit::Fit& other, Judgement& j) {
-  const Hypothesis& h = j.hypothesis;
+fit::Fit fit_from(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& other,
+                  const sim::plant::Plant& start) {
   const auto free = free_of(h, base_model.prior_sd);
   fit::FitOptions o{.lenient = true};
   for (const fit::FreeParameter& f : free) {
     const auto id = sim::plant::same_parameter(other.plant, h.plant, f.id);
     o.values.push_back(id ? sim::plant::parameter_value(other.plant, *id)
-                          : sim::plant::parameter_value(j.fit.plant, f.id));
+                          : sim::plant::parameter_value(start, f.id));
   }
   for (const auto& e : other.events) o.start.push_back(e.state);
-  if (fit::Fit f = fit::fit(h.under_test(), base_model.events, free, o);
+  return fit::fit(h.under_test(), base_model.events, free, o);
+}
+
+void try_from(const BaseModel& base_model, const fit::Fit& other, Judgement& j) {
+  if (fit::Fit f = fit_from(base_model, j.hypothesis, other, j.fit.plant);
       f.failed.empty() && fit::better(f, j.fit))
     j.fit = std::move(f);
 }

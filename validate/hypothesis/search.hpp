@@ -75,6 +75,11 @@ std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesi
 /// Fits a hypothesis that was not promising, from its start values.
 void fit_alone(const BaseModel& base_model, Judgement& j);
 
+/// Fits `h` from the end point of the fit of another structure. Parameters that the other one lacks start at
+/// their values in `start`, a plant of the structure of `h`.
+fit::Fit fit_from(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& other,
+                  const sim::plant::Plant& start);
+
 /// Refits `j` from the end point of the fit of another structure, and keeps the better fit.
 void try_from(const BaseModel& base_model, const fit::Fit& other, Judgement& j);
 

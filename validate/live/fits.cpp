@@ -90,7 +90,7 @@ json candidates_json(const diagnose::Diagnosis& d) {
       one["what"] = j.hypothesis.what;
       one["side"] = std::string(hypothesis::side_name(j.hypothesis.side));
       one["chi2"] = number(j.fit.reduced_chi2());
-      one["effect"] = j.hypothesis.with.empty() ? j.hypothesis.name : j.hypothesis.with;
+      one["effect"] = hypothesis::full_name(j.hypothesis);
     }
     shown.push_back(std::move(one));
   }
@@ -173,9 +173,11 @@ void run_addition(const Setup& setup, const plant::PlantModel& model, const json
       emit({{"type", "reached"}, {"chi2", f.reduced_chi2()}, {"events", curves_json(f, out)}});
   };
   const add::AddOptions options{.calibrate = fitting(setup, request, emit), .reached = reached};
-  const auto hypothesis = add::find_hypothesis(model, effect);
-  const auto quick = add::add_at_once(model, hypothesis, setup.records, options);
-  const add::Addition a = quick ? *quick : add::add_effect(model, hypothesis, setup.records, options);
+  std::optional<add::Addition> quick;
+  if (effect.find('+') == std::string::npos)
+    quick =
+        add::add_at_once(model, add::find_hypothesis(model, effect, setup.records), setup.records, options);
+  const add::Addition a = quick ? *quick : add::add_effects(model, {effect}, setup.records, options);
   emit({{"type", "step"},
         {"kind", "added"},
         {"effect", effect},

@@ -45,7 +45,7 @@ TEST(Add, MissingExciterExplainsTheUnseenEvent) {
   const plant::PlantModel model = example(false);
   AddOptions options = power_only();
   options.calibrate.held_out = {"2"};
-  const Addition a = add_effect(model, find_hypothesis(model, "sexs"), records(model), options);
+  const Addition a = add_effects(model, {"sexs"}, records(model), options);
   EXPECT_TRUE(a.earns);
   EXPECT_TRUE(a.adequate) << a.sentence;
   ASSERT_EQ(a.events.size(), 2U);
@@ -62,19 +62,19 @@ TEST(Add, OneFitSufficesForTheRightEffectOnly) {
   const plant::PlantModel model = example(false);
   AddOptions options = power_only();
   options.calibrate.held_out = {"2"};
-  const auto a = add_at_once(model, find_hypothesis(model, "SEXS"), records(model), options);
+  const auto a = add_at_once(model, find_hypothesis(model, "SEXS", {}), records(model), options);
   ASSERT_TRUE(a);
   EXPECT_TRUE(a->adequate);
   const auto gain = std::ranges::find(a->parameters, "K", &fit::FittedParameter::name);
   ASSERT_LT(gain - a->parameters.begin(), a->own);
   EXPECT_LT(gain->low, 100);
   EXPECT_GT(gain->high, 100);
-  EXPECT_FALSE(add_at_once(model, find_hypothesis(model, "TGOV1"), records(model), options));
+  EXPECT_FALSE(add_at_once(model, find_hypothesis(model, "TGOV1", {}), records(model), options));
 }
 
 TEST(AddFull, VerdictOmitsManyValues) {
   const plant::PlantModel model = example(false);
-  const Addition a = add_effect(model, find_hypothesis(model, "IEEET1"), records(model), power_only());
+  const Addition a = add_effects(model, {"IEEET1"}, records(model), power_only());
   ASSERT_GT(a.own, 6);
   EXPECT_THAT(a.sentence,
               AllOf(HasSubstr(fmt::format("Its {} values are in the table of parameters.", a.own)),
@@ -87,7 +87,7 @@ TEST(Add, IntervalsContainTheTruth) {
   const plant::PlantModel model = example(false), truth = example(true);
   AddOptions options = power_only();
   options.calibrate.held_out = {"4"};
-  const Addition a = add_effect(model, find_hypothesis(model, "SEXS"), records(model, 4), options);
+  const Addition a = add_effects(model, {"SEXS"}, records(model, 4), options);
   ASSERT_EQ(a.parameters.size(), 17U);
   std::vector<std::string> outside;
   const std::vector<double> bound =
@@ -131,8 +131,7 @@ std::vector<record::Record> with_rate_feedback(const plant::PlantModel& model, d
 TEST(AddFull, FreesRateFeedbackInactiveByDefault) {
   constexpr double kKF = 0.05;
   const plant::PlantModel model = example(false);
-  const Addition a =
-      add_effect(model, find_hypothesis(model, "EXST1"), with_rate_feedback(model, kKF), power_only());
+  const Addition a = add_effects(model, {"EXST1"}, with_rate_feedback(model, kKF), power_only());
   EXPECT_TRUE(a.earns) << a.sentence;
   EXPECT_TRUE(a.adequate) << a.sentence;
   EXPECT_EQ(a.hypothesis.name, "EXST1");
@@ -144,15 +143,15 @@ TEST(AddFull, FreesRateFeedbackInactiveByDefault) {
 
 TEST(AddFull, FreesNothingWithoutEvidence) {
   const plant::PlantModel model = example(false);
-  const auto exst1 = find_hypothesis(model, "EXST1");
-  const Addition a = add_effect(model, exst1, with_rate_feedback(model, 0.0), power_only());
+  const auto exst1 = find_hypothesis(model, "EXST1", {});
+  const Addition a = add_effects(model, {"EXST1"}, with_rate_feedback(model, 0.0), power_only());
   EXPECT_TRUE(a.earns) << a.sentence;
   EXPECT_EQ(a.own, static_cast<int>(exst1.free.size()));
 }
 
 TEST(Add, RejectsAnAbsentEffect) {
   const plant::PlantModel model = example(true);
-  const Addition a = add_effect(model, find_hypothesis(model, "GENROU:Ra"), records(model), power_only());
+  const Addition a = add_effects(model, {"GENROU:Ra"}, records(model), power_only());
   EXPECT_FALSE(a.earns) << a.evidence;
   EXPECT_TRUE(a.adequate);
 }
@@ -171,7 +170,7 @@ TEST(Add, FindsMissingInstrument) {
   model.plant.measurements.clear();
   AddOptions options = power_only();
   options.calibrate.held_out = {"2"};
-  const Addition a = add_effect(model, find_hypothesis(model, "CTERROR"), example.records, options);
+  const Addition a = add_effects(model, {"CTERROR"}, example.records, options);
   EXPECT_TRUE(a.earns) << a.sentence;
   EXPECT_TRUE(a.adequate) << a.sentence;
   ASSERT_EQ(a.own, 2);
@@ -180,10 +179,9 @@ TEST(Add, FindsMissingInstrument) {
   EXPECT_LT(a.parameters[1].error, 0.01);
 }
 
-/// Records without an angle, whose frequency passed a first-order filter.
-TEST(Add, RemovesTheLagOfTheFrequency) {
-  constexpr double kLag = 0.1;  // [s]
-  const plant::PlantModel model = example(true);
+constexpr double kLag = 0.1;  ///< lag of the frequency in with_lag() [s]
+/// The committed records without an angle, whose frequency passed a first-order filter.
+std::vector<record::Record> with_lag(const plant::PlantModel& model) {
   auto lagged = records(model, 3);
   for (record::Record& r : lagged) {
     r.f = compare::frequency_of(r.t, r.theta, r.base.frequency);
@@ -196,14 +194,46 @@ TEST(Add, RemovesTheLagOfTheFrequency) {
     r.theta = record::angle_of_frequency(r);
     r.angle = record::AngleSource::integrated;
   }
+  return lagged;
+}
+
+TEST(Add, RemovesTheLagOfTheFrequency) {
+  const plant::PlantModel model = example(true);
   AddOptions options = power_only();
   options.calibrate.held_out = {"avr_ev3.csv"};
-  const Addition a = add_effect(model, find_hypothesis(model, "FREQLAG"), lagged, options);
+  const Addition a = add_effects(model, {"FREQLAG"}, with_lag(model), options);
   EXPECT_TRUE(a.earns) << a.sentence;
   EXPECT_GT(a.evidence, 40);  // what a diagnosis requires
   ASSERT_EQ(a.own, 1);
   EXPECT_NEAR(a.parameters[0].value, kLag, 3 * a.parameters[0].error);
   EXPECT_LT(a.parameters[0].error, 0.2 * kLag);
+}
+
+TEST(AddFull, AddsTwoEffectsTogetherInAnyOrder) {
+  const plant::PlantModel model = example(false);
+  AddOptions options = power_only();
+  options.calibrate.held_out = {"avr_ev2.csv"};
+  const Addition a = add_effects(model, {"FREQLAG", "SEXS"}, with_lag(model), options),
+                 b = add_effects(model, {"SEXS + FREQLAG"}, with_lag(model), options);
+  EXPECT_TRUE(a.earns) << a.sentence;
+  EXPECT_EQ(a.name(), "FREQLAG + SEXS");
+  ASSERT_EQ(a.effects.size(), 2U);
+  for (const AddedEffect& e : a.effects) EXPECT_GT(e.evidence, 40) << e.name;
+  const auto lag = std::ranges::find(a.parameters, "FREQLAG", &fit::FittedParameter::block);
+  ASSERT_NE(lag, a.parameters.end());
+  EXPECT_NEAR(lag->value, kLag, 3 * lag->error);
+  EXPECT_EQ(a.evidence, b.evidence);
+  EXPECT_EQ(a.effects[0].evidence, b.effects[0].evidence);
+}
+
+TEST(AddFull, AcceptsNoPairWithASuperfluousEffect) {
+  const plant::PlantModel model = example(false);
+  const Addition a = add_effects(model, {"SEXS", "GENROU:Ra"}, records(model), power_only());
+  EXPECT_FALSE(a.earns);
+  EXPECT_GT(a.evidence, 1000);
+  EXPECT_GT(a.effects[1].evidence, 1000);
+  EXPECT_LT(a.effects[0].evidence, 10);
+  EXPECT_THAT(a.sentence, HasSubstr("The evidence of GENROU:Ra beside the others"));
 }
 
 TEST(Add, ScreensEffectsThroughTheInstruments) {
@@ -212,24 +242,34 @@ TEST(Add, ScreensEffectsThroughTheInstruments) {
   model.plant.controls.clear();
   AddOptions options = power_only();
   options.calibrate.held_out = {"2"};
-  const Addition a = add_effect(model, find_hypothesis(model, "SEXS"), example.records, options);
+  const Addition a = add_effects(model, {"SEXS"}, example.records, options);
   EXPECT_TRUE(a.earns) << a.sentence;
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
 
 TEST(Add, FindsExactNamesAndListsSimilarOnes) {
   const plant::PlantModel model = example(true);
-  EXPECT_EQ(find_hypothesis(model, "genrou: S10, S12").name, "GENROU:S10,S12");
-  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "nonesuch"); }),
+  EXPECT_EQ(find_hypothesis(model, "genrou: S10, S12", {}).name, "GENROU:S10,S12");
+  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "nonesuch", {}); }),
               ElementsAre(AllOf(HasSubstr("no effect of that name"), HasSubstr("TGOV1"))));
-  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "TGOV"); }),
+  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "TGOV", {}); }),
               ElementsAre(EndsWith("did you mean TGOV1?")));
-  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "IEEET1"); }),
+  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "IEEET1", {}); }),
               ElementsAre(AllOf(HasSubstr("no free place"), HasSubstr("exciter"))));
-  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "VREFSTEP"); }),
+  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "VREFSTEP", {}); }),
               ElementsAre(HasSubstr("belongs to one event")));
-  EXPECT_THAT(test::messages([&] { find_hypothesis(example(false), "IEEEST"); }),
+  EXPECT_THAT(test::messages([&] { find_hypothesis(example(false), "IEEEST", {}); }),
               ElementsAre(HasSubstr("add the exciter first")));
+  EXPECT_THAT(test::messages([&] { find_hypothesis(model, "FREQLAG", records(model)); }),
+              ElementsAre(HasSubstr("no record has an angle that was integrated")));
+}
+
+TEST(Add, ListsEveryNameThatCannotBeAdded) {
+  const plant::PlantModel model = example(false);
+  EXPECT_THAT(test::messages([&] {
+                add_effects(model, {"SEXS", "nonesuch", "TGOV", "SEXS"}, records(model), power_only());
+              }),
+              UnorderedElementsAre(HasSubstr("'nonesuch'"), HasSubstr("'TGOV'"), HasSubstr("named twice")));
 }
 
 }  // namespace

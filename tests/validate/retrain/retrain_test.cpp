@@ -42,7 +42,7 @@ struct Example {
     for (int k = 1; k <= 2; ++k)
       records.push_back(record::read_record(
           test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", k)), before.record_base));
-    added.hypothesis = add::find_hypothesis(before, "SEXS");
+    added.hypothesis = add::find_hypothesis(before, "SEXS", {});
     added.model = before;
     added.model.plant.controls.push_back(
         {sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4, 5}});
