@@ -215,9 +215,12 @@ class Check : Findings {
 
   void voltage() {
     const double v = signals_.V.level, theta = signals_.theta_level;
-    if (within(v, 0.7, 1.3)) return;
+    if (within(v, 0.85, 1.15)) return;
     const std::string what = fmt::format("V = {:.4g} pu before the event", v);
-    if (within(theta, 0.85, 1.15) || within(theta / constants::degree, 0.85, 1.15))
+    if (within(v, 0.7, 1.3))
+      warn("unusual_voltage", what, "plants run within 0.85 to 1.15 pu",
+           "check the unit of V and base_kv, the nominal voltage, line to line");
+    else if (within(theta, 0.85, 1.15) || within(theta / constants::degree, 0.85, 1.15))
       refuse("swapped_channels", what + fmt::format(" and theta = {:.4g} rad", theta),
              "the angle looks like a voltage in pu", "exchange the columns of V and theta");
     else if (r_.base.kv > 0 && (near(v, r_.base.kv, 0.25) || near(v, 1e3 * r_.base.kv, 0.25)))
@@ -353,6 +356,14 @@ class Check : Findings {
       refuse("wrong_base", doubt->what, doubt->why, doubt->remedy);
     else if (const auto apart = dispatch_doubt(r_, plant_, {signals_.P.level, signals_.Q.level}))
       warn("dispatch", apart->what, apart->why, apart->remedy);
+    else if (const double share = std::hypot(signals_.P.level, signals_.Q.level) * machine_per_record();
+             plant_.mva > 0 && share < 0.01)
+      warn("small_power",
+           fmt::format(
+               "P = {:.3g} MW and Q = {:.3g} Mvar before the event, {:.2g} % of the machine's {:g} MVA",
+               signals_.P.level * r_.base.mva, signals_.Q.level * r_.base.mva, 100 * share, plant_.mva),
+           "the unit idled, or P and Q are in another unit than their columns say",
+           "check their units, and base_mva of the record and of the plant");
   }
 
   /// Warns of doubtful signs, unless the steps of the phasors have decided.

@@ -189,6 +189,17 @@ TEST(RecordCheckTest, VoltsUnderTheHeadingOfKilovolts_NameTheUnit) {
               ::testing::HasSubstr("a voltage in V taken as kV"));
 }
 
+TEST(RecordCheckTest, WarnsOfUnusualVoltageAndPower) {
+  const auto kinds = [](const Written& w) {
+    std::vector<std::string> all;
+    for (const Finding& f : check_record(rewritten(example(1), w), {100, 60})) all.push_back(f.kind);
+    return all;
+  };
+  EXPECT_THAT(kinds({}), ::testing::IsEmpty());
+  EXPECT_THAT(kinds({.edit = [](auto& x) { x[1] *= 0.75; }}), ::testing::Contains("unusual_voltage"));
+  EXPECT_THAT(kinds({.edit = [](auto& x) { x[3] *= 1e-3, x[4] *= 1e-3; }}),
+              ::testing::Contains("small_power"));
+}
 TEST(RecordCheckTest, ReportsSlowRecord) {
   const record::Record r = example(1);
   const auto every = [&](std::size_t stride) {

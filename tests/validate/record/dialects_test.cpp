@@ -71,6 +71,13 @@ INSTANTIATE_TEST_SUITE_P(
                 "{t:.7f},140.76,10,60,80,20"},
         Dialect{"simulated", "t_s,G7.V_pu,G7.theta_rad,G7.P_pu,G7.Q_pu,bus4.V_pu,bus4.theta_rad\n",
                 "{t:.7f},1.02,0.17453293,0.4,0.1,1,0"},
+        Dialect{"terminal_without_a_dot",
+                "Time (s),GEN2 Voltage Magnitude (kV),GEN2 Voltage Angle (deg),GEN2 Active Power (MW),"
+                "GEN2 Reactive Power (MVAr),Rotor Angle (deg)\n",
+                "{t:.7f},140.76,10,80,20,45"},
+        Dialect{"terminal_before_underline",
+                "t_s,pmu_1_V_pu,pmu_1_theta_deg,pmu_1_P_pu,pmu_1_Q_pu,aux_P_pu\n",
+                "{t:.7f},1.02,10,0.4,0.1,3"},
         Dialect{"current", "t_s,V1 Mag (kV),V1 Ang (deg),I1 Mag (A),I1 Ang (deg)\n",
                 // S = 0.4 + j0.1 on 200 MVA at 140.76 kV: 338.2319 A, lagging by 14.0362435 degrees.
                 "{t:.7f},140.76,10,338.2319044,-4.0362435"}),

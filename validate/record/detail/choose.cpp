@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -303,6 +304,33 @@ bool is_nearest(const std::vector<Heading>& headings, const Heading& one, const 
   });
 }
 
+/// Recognises headings with a terminal in front, without a dot: "GEN2 Voltage Magnitude (kV)", "gen2_P_MW".
+/// Words in front are a terminal only if they stand before a voltage, P and Q, and the file has no other
+/// voltage: "Rotor Angle" is no angle of a terminal "Rotor".
+void recognise_terminals(std::vector<Heading>& headings) {
+  if (std::ranges::any_of(headings, [](const Heading& h) { return h.meaning && h.meaning->quantity == V; }))
+    return;
+  std::map<std::string, std::map<std::size_t, ColumnMeaning>> found;  // by terminal and heading
+  for (std::size_t i = 0; i < headings.size(); ++i) {
+    const std::string& name = headings[i].name;
+    if (headings[i].meaning) continue;
+    for (std::size_t at = name.find_first_of(" _-"); at != std::string::npos;
+         at = name.find_first_of(" _-", at + 1))
+      if (auto m = column_meaning(name.substr(at + 1), headings[i].unit); m && at > 0)
+        found[name.substr(0, at)].emplace(i, *m);
+  }
+  for (const auto& [terminal, columns] : found) {
+    const auto has = [&](Quantity q) {
+      return std::ranges::any_of(columns, [&](const auto& c) { return c.second.quantity == q; });
+    };
+    if (!has(V) || !has(P) || !has(Q)) continue;
+    for (auto [i, m] : columns) {
+      m.terminal = terminal;
+      headings[i].meaning = std::move(m);
+    }
+  }
+}
+
 }  // namespace
 
 bool Heading::unknown_unit() const {
@@ -327,6 +355,7 @@ static bool is_asked_for(Quantity q, const ReadOptions& options) {
 std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const ReadOptions& options,
                                         const RecordBase& base, const std::string& where, Record& about,
                                         Problems& problems) {
+  recognise_terminals(headings);
   if (options.component == Component::plant)
     for (auto& h : headings)
       if (h.meaning && is_inner(h.meaning->quantity)) h.meaning.reset();
