@@ -6,7 +6,7 @@
 
 namespace swingbank::sim {
 
-/// Returns `m ? a : b`, as for SIMD batches.
+/// Returns `m ? a : b`; the counterpart of select() for SIMD batches.
 inline double select(bool m, double a, double b) { return m ? a : b; }
 
 /// Value with its gradient with respect to N parameters; operators apply the sum, product and quotient rules.

@@ -10,16 +10,16 @@
 //   prepare<T>()                  computes coefficients from parameters, so that the loop has no division
 //   equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
-//   converter                     of a source, optional: true for a controlled current source
+//   converter                     of a source, optional: true if it is a controlled current source
 //   at_shunt                      of a load, optional: layout of its .dyr records of switched shunts
 //   publish<T>()                  of a control, optional: outputs that are states, written before evaluation
 //   afterwards<T>()               of a control, optional: derivatives that need the field voltage
-//   guards, guard<T>()            of a control, optional: functions with zeros where its derivatives jump
-//   remark()                      optional: warning about values that ask for unmodelled behaviour
-//   elsewhere                     of a plant control, optional: parameters that name its measuring point
+//   guards, guard<T>()            of a control, optional: functions that are zero where its derivatives jump
+//   remark()                      optional: warning about values that request unmodelled behaviour
+//   elsewhere                     of a plant control, optional: parameters that select its measuring point
 //   switching_times()             optional: switching times of its equations
 //   closed_form()                 of a machine, optional: parameters from a record, without a search
-//   measure(), memory()           of a measurement: its operation on phasors, and its reach in time
+//   measure(), memory()           of a measurement: its operation on phasors, and its memory [s]
 //   angle_lag()                   of a measurement, optional: lag of an angle integrated from its frequency
 // CMake finds the header and generates the registry. T runs over `Scalars`.
 #include <algorithm>
@@ -41,7 +41,7 @@
 
 namespace swingbank::sim {
 
-/// Place of an effect in a plant. From `compensator` to `shaft` also the evaluation order of the controls.
+/// Place of an effect in a plant. The order is also the evaluation order of the controls.
 enum class Slot {
   machine,         ///< the source: a synchronous machine or a converter (Effect::converter)
   transformer,     ///< between the machine's terminal and the grid
@@ -52,7 +52,7 @@ enum class Slot {
   stabiliser,      ///< outputs Vs; after the governor, because accelerating power needs Tm
   limiter,         ///< adds to Vlimiter
   exciter,         ///< outputs Efd
-  plant_control,   ///< converters only, as the following ones: outputs Pext, Qext
+  plant_control,   ///< outputs Pext, Qext; this and the next four slots exist in converters only
   torque_control,  ///< outputs Pext and wref from the turbine's speed
   pitch_control,   ///< outputs pitch
   aerodynamics,    ///< outputs Paero
@@ -95,7 +95,8 @@ constexpr std::optional<Slot> reader_of(Slot slot) {
 
 /// Null value of a parameter that has none.
 constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
-/// Placeholder in a parameter's record, before the bounds' source: the default has the effect's source.
+/// Placeholder for `default_from` in a parameter's record: the default's source is the effect's
+/// defaults_from.
 constexpr Source kAsEffect = {};
 
 /// One parameter of an effect. `low` and `high` bound the usual range (sim/plant/usual.hpp); check() refuses
@@ -130,33 +131,35 @@ constexpr Parameter lower_limit(Parameter p) {
 /// at the plant. Index -1: the effect has no such parameter.
 struct Elsewhere {
   int bus = -1;                          ///< number of the regulated bus
-  int from = -1, to = -1, circuit = -1;  ///< branch whose flow is measured, at its first bus
+  int from = -1, to = -1, circuit = -1;  ///< branch whose flow is measured at bus `from`
 };
 
 /// One state variable of an effect, with its limits and its weight in step control.
 struct State {
   std::string_view name, unit, meaning;  ///< identifier, unit and definition
-  /// Weight of the state's error in step control: a speed error counts through the angle it causes.
+  /// Weight of the state's error in step size control. The weight of a speed converts its error into an angle
+  /// error.
   double weight = 1.0;
-  /// Indices of the coefficients with the non-windup limits, -1: none. The integrator clamps the state there:
-  /// its derivative is zero while it points out of the limits.
+  /// Indices of the coefficients with the non-windup limits, -1: none. The integrator clamps the state at its
+  /// limits: at a limit, it sets a derivative that points outwards to zero.
   int low = -1, high = -1;  ///< coefficient indices of lower and upper limit
-  /// Coefficients that multiply the derivative: while both are zero, a state initialised by steady() does not
-  /// move, whatever the signals. -1: none; a state that names none is always integrated.
+  /// Coefficients that multiply the derivative. While all named coefficients are zero, the state keeps its
+  /// steady-state value, whatever the signals. A state without such coefficients is always integrated.
   struct Movers {
     int first = -1, second = -1;  ///< indices of the coefficients, -1: none
   };
-  Movers moved_by = {};  ///< coefficients without which the state does not move
-  /// Index of a coefficient that multiplies `weight` where it is above 1, -1: none.
+  Movers moved_by = {};  ///< the state is constant while these are zero
+  /// Index of a coefficient that multiplies `weight` if it exceeds 1; -1: none.
   int weighed_by = -1;
-  /// The derivative has kinks that `low` and `high` do not show: every step is checked as one with a kink.
+  /// Whether the derivative has kinks that `low` and `high` do not describe. The error estimate of every step
+  /// then includes that of a kink.
   bool bends = false;
 };
 
 /// Conventions that differ between simulators (decision 07), and the system data that an effect needs.
 struct Conventions {
-  bool speed_voltage = true;     ///< flux linkages' voltage scales with speed: E'' = (1 + w) psi''
-  bool mechanical_power = true;  ///< governor sets power, torque is (Pm - D w)/(1 + w); else torque
+  bool speed_voltage = true;     ///< voltage of the flux linkages scales with speed: E'' = (1 + w) psi''
+  bool mechanical_power = true;  ///< true: governor outputs power, torque = (Pm - D w)/(1 + w); false: torque
   double frequency = 60.0;       ///< system frequency [Hz]
   double mva = 100.0;            ///< base of the machine [MVA], set by operating_point
   /// Conventions of PSS/E at a system frequency [Hz].
@@ -166,8 +169,8 @@ struct Conventions {
 };
 
 /// Remote measurement of a plant control: voltage of the regulated bus [pu], current [pu] and power [pu] of
-/// the selected branch, positive out of the plant. Without a bus or branch in the parameters, those of the
-/// plant's grid side, which is where a record of the plant was taken.
+/// the selected branch, positive out of the plant. If the parameters select no bus or branch, the values are
+/// those of the plant's grid side, where the plant's records are measured.
 template <class T>
 struct Far {
   T Vr{}, Vi{}, Ir{}, Ii{}, P{}, Q{};
@@ -176,8 +179,8 @@ struct Far {
 
 /// Signals exchanged by the blocks of one plant, per unit on the machine's own base; r, i in the network
 /// frame. For a converter, Tm is the active current command and Efd the reactive current command, positive
-/// while it delivers Q [pu]. Code that holds, estimates or records Tm and Efd therefore serves both kinds of
-/// source.
+/// while the converter delivers Q [pu]. Code that estimates or records Tm and Efd therefore serves both kinds
+/// of source.
 template <class T>
 struct Signals {
   T Vr{}, Vi{}, V{};   ///< voltage at the machine's terminal and its magnitude [pu]
@@ -190,11 +193,12 @@ struct Signals {
   T Vs{};              ///< stabiliser output [pu]
   T Vlimiter{};        ///< sum of the limiters' inputs to the voltage error [pu]
   T dVref{}, dPref{};  ///< changes of the exciter's and the governor's reference [pu]
-  /// Change of the governor's reference in its own unit [pu]: speed where a droop follows it, else power.
+  /// Change of the governor's reference in its own unit [pu]: speed if a droop follows the reference, else
+  /// power.
   T dGref{};
-  T t{};  ///< time [s]; at a switching time (switching_times()) its value on the side being integrated
-  /// Voltage at the grid's side of the step-up transformer [pu]. Of a load, Vpr and Vpi are the voltage of
-  /// the bus that it regulates (Consumer::regulated), else of its own bus.
+  T t{};  ///< time [s], limited to just before the end of the integrated segment (kBeforeSwitching)
+  /// Voltage at the grid's side of the step-up transformer [pu]. For a load, Vpr and Vpi are the voltage of
+  /// the bus that it regulates (Consumer::regulated), by default its own bus.
   T Vpr{}, Vpi{}, Vp{};  ///< in the network frame, and its magnitude [pu]
   // Signals of converter controls only:
   /// References of P and of Q (or V, by the control's flags), relative to the operating point [pu].
@@ -222,13 +226,13 @@ struct MachineOps {
   /// From Vr, Vi, Ir, Ii: computes the states, s.Efd, s.Tm and the coefficients that depend on the operating
   /// point. Returns the reason of a failure, empty on success.
   std::string (*steady)(const T* p, T* c, Signals<T>& s, T* x) = nullptr;
-  /// Optional, for machines without a constant impedance (saliency, saturated reactances): Vr, Vi -> Ir, Ii,
-  /// after emf. source_impedance then gives the start value.
+  /// Optional, for machines without a constant impedance (saliency, saturated reactances): Vr, Vi -> Ir, Ii.
+  /// It is called after emf(). source_impedance() then gives the impedance at which the iteration starts.
   void (*current)(const T* c, const T* x, T* m, Signals<T>& s) = nullptr;
 };
 
-/// Equations of a control: reads and writes signals, computes the derivatives of its states. `user_model` is
-/// the data of a user-defined model, else nullptr.
+/// Equations of a control, which reads and writes signals and computes the derivatives of its states.
+/// `user_model` is the data of a user-defined model, else nullptr.
 template <class T>
 struct ControlOps {
   /// States and signals -> outputs in the signals, and derivatives dx [1/s].
@@ -274,7 +278,8 @@ struct Phasors {
   std::vector<double> df;                  ///< [sample]: reported frequency deviation [pu]
 };
 
-/// Equations of one effect for the scalar type T (double, SIMD batch or dual). Null: not part of its kind.
+/// Equations of one effect for the scalar type T (double, SIMD batch or dual). A function that this kind of
+/// effect does not have is null.
 template <class T>
 struct Ops {
   /// Parameters p and conventions -> coefficients c; called once per simulation.
@@ -297,12 +302,12 @@ struct Recording;
 
 /// Layout of .dyr records of switched shunts that differ from "bus, 'MODEL', id, parameters". A record named
 /// `of_first` is for the first switched shunt of a bus and has the regulated bus in the id's place. A record
-/// named `by_id` has the id, followed by the regulated bus. After the first columns follow, for each of
-/// `beside` further shunts, whether it is switched and its id.
+/// named `by_id` has the id, followed by the regulated bus. After the first `columns` fields, each of
+/// `beside` further shunts has two fields: whether it is switched, and its id.
 struct ShuntRecord {
   std::string_view of_first, by_id;          ///< model names of the two layouts, empty: none
   int regulated;                             ///< parameter with the regulated bus's number, the first column
-  std::size_t columns;                       ///< before the further shunts
+  std::size_t columns;                       ///< number of columns before the further shunts
   std::size_t beside;                        ///< number of further shunts
   static constexpr std::size_t of_each = 2;  ///< fields of each further shunt
   /// Returns the number of fields of the further shunts, which the reader skips.
@@ -320,7 +325,7 @@ struct Effect {
   int raw_resistance, raw_reactance;      ///< parameters that PSS/E keeps in the .raw (ZR, ZX), or -1
   int coefficients, scratch;              ///< numbers of coefficients c and of scratch values m
   int guards = 0;                         ///< number of functions that guard() computes
-  bool converter = false;                 ///< of a source: controlled current, no synchronous machine
+  bool converter = false;                 ///< of a source: true if it is a controlled current source
   /// Layout of the .dyr records of a load that belong to switched shunts, else nullptr.
   const ShuntRecord* at_shunt = nullptr;
   Elsewhere elsewhere = {};  ///< parameters that select a remote measuring point
@@ -328,17 +333,18 @@ struct Effect {
   /// messages.
   void (*check)(const void* user_model, const double* p, const std::string& where, Problems& problems);
   std::string_view (*unphysical)(const double* p);  ///< empty, or the violated ordering
-  /// Returns a warning about values that ask for unmodelled behaviour, empty if there are none; nullptr: no
+  /// Returns a warning about values that request unmodelled behaviour, empty if there are none; nullptr: no
   /// such check.
   std::string (*remark)(const double* p) = nullptr;
   /// Returns the times at which the equations jump [s]; nullptr: never.
   std::vector<double> (*switching_times)(const void* user_model, const double* p);
   /// Applies the instrument to the true phasors; `seed` drives its random numbers. Only for measurements.
   void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
-  /// Returns how far an output sample of measure() depends on input to either side [s]; nullptr: 0.
+  /// Returns the time [s] before and after an output sample of measure() within which the input affects it;
+  /// nullptr: 0.
   double (*memory)(const double* p);
-  /// Returns the time T [s] by which an angle that is integrated from the reported frequency lags: the true
-  /// angle is theta + T d(theta)/dt. nullptr: 0.
+  /// Returns the lag T [s] of an angle that is integrated from the reported frequency: the true angle is
+  /// theta + T d(theta)/dt. nullptr: 0.
   double (*angle_lag)(const double* p) = nullptr;
   OpsFor<Scalars>::type ops;                         ///< equations for every scalar type
   std::shared_ptr<const void> user_model = nullptr;  ///< data of a user-defined model
@@ -356,7 +362,7 @@ struct Effect {
   [[nodiscard]] std::vector<double> default_parameters() const;
 };
 
-/// Returns the name of the effect's slot; "converter" for a source that is one.
+/// Returns the name of the effect's slot, or "converter" if the effect is a converter.
 std::string_view kind_name(const Effect& effect);
 /// Returns why a control cannot belong to a source ("governor is part of a synchronous machine, ..."), empty
 /// if it can.

@@ -1,6 +1,6 @@
 #pragma once
-// Single-precision equations of effects, only those that an integration step needs. Operating points and
-// coefficients are computed in double.
+// Single-precision equations of effects, limited to those that an integration step evaluates. Operating
+// points and coefficients are computed in double.
 #include "sim/core/effect.hpp"
 #include "sim/core/float_pack.hpp"
 
@@ -8,7 +8,8 @@ namespace swingbank::sim {
 
 /// Whether single-precision equations exist: true for compiled effects, false for user-defined models.
 bool has_float_ops(const Effect& effect);
-/// Returns the single-precision equations. Requires has_float_ops(). Generated, as the registry is.
+/// Returns the single-precision equations. Requires has_float_ops(). CMake generates the definition together
+/// with the registry of effects.
 template <>
 const Ops<FloatPack>& Effect::get<FloatPack>() const;
 

@@ -1,6 +1,6 @@
 #pragma once
-// FloatPack: sixteen independent scenarios in single precision, twice the lanes of a Pack of the same size.
-// Sums need a compensation term for the digits that a float cannot hold.
+// FloatPack: sixteen independent scenarios in single precision. It has twice the lanes of a Pack of the same
+// size. Sums over many steps need compensated summation, because a float has only seven digits.
 #include "sim/core/pack.hpp"
 
 namespace swingbank::sim {
@@ -8,8 +8,8 @@ namespace swingbank::sim {
 /// Sixteen single-precision numbers.
 using FloatPack = Packed<float, 16>;
 
-/// Computes sine and cosine together, for |a| < 1e4 rad. Reduction by multiples of pi/2 in three parts;
-/// minimax coefficients from Moshier's Cephes library (sinf.c).
+/// Computes sine and cosine together, for |a| < 1e4 rad. The argument is reduced by multiples of pi/2 in
+/// three parts. The minimax coefficients are from Moshier's Cephes library (sinf.c).
 inline void sincos(FloatPack a, FloatPack& s, FloatPack& c) {
   using P = FloatPack;
   const P k = round_nearest(a * P(0.63661977236758134308));
@@ -22,8 +22,8 @@ inline void sincos(FloatPack a, FloatPack& s, FloatPack& c) {
   turn(k, ps, pc, s, c);
 }
 
-/// Four-quadrant arctangent [rad]; 0 where both arguments are 0. Reduction and polynomial from Moshier's
-/// Cephes library (atanf.c).
+/// Returns the four-quadrant arctangent [rad], or 0 if both arguments are 0. Reduction and polynomial are
+/// from Moshier's Cephes library (atanf.c).
 inline FloatPack atan2(FloatPack y, FloatPack x) {
   using P = FloatPack;
   const P a = absolute(y), b = absolute(x);

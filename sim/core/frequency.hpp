@@ -3,7 +3,7 @@
 //   f(s) = s theta(s) / (2 pi f0 (1 + s Tw)(1 + s Tf))          [pu deviation]
 // By partial fractions this is the difference of two first-order lags of theta, divided by 2 pi f0 (Tf - Tw).
 // Each lag is integrated exactly for an angle that is linear between samples. The filter starts in steady
-// state, so f(0) = 0. While the caller holds theta (V = 0), the filter keeps running.
+// state, so f(0) = 0. While V = 0, the caller keeps theta constant and the filter continues.
 #include <cmath>
 #include <cstddef>
 
@@ -17,7 +17,7 @@ struct FrequencyFilter {
   double filter = 0.02;  ///< Tf [s]
 };
 
-/// The filter, sample by sample. Angles are relative to the first one.
+/// Filter of the frequency measurement, evaluated sample by sample. Angles are relative to the first one.
 class FrequencyLags {
  public:
   /// Constructs the filter in steady state. rate: samples per second [1/s]; f0: nominal frequency [Hz].
@@ -31,8 +31,8 @@ class FrequencyLags {
     last_ = u;
     return f;
   }
-  /// Returns the angle [rad] at the next sample, whose frequency deviation is `f` [pu]: the exact, stable
-  /// inverse.
+  /// Returns the angle [rad] at the next sample, whose frequency deviation is `f` [pu]. This is the exact and
+  /// stable inverse of frequency().
   double angle(double f) {
     const double from_states = washout_.keep * washout_.x - filter_.keep * filter_.x;
     const double u = (f / scale_ - from_states - (washout_.before - filter_.before) * last_) /
@@ -71,8 +71,8 @@ inline void terminal_frequency(const double* theta, std::size_t samples, double 
   }
 }
 
-/// Computes the angle [rad], relative to the first one, from a frequency deviation as terminal_frequency()
-/// returns it.
+/// Computes the angles `theta` [rad], relative to the first one, from the frequency deviation [pu]. This is
+/// the inverse of terminal_frequency().
 inline void terminal_angle(const double* frequency, std::size_t samples, double rate, double f0,
                            const FrequencyFilter& constants, double* theta) {
   FrequencyLags lags(rate, f0, constants);

@@ -1,6 +1,6 @@
 #pragma once
-// Sources of the effects' numbers: the cited works, and two reasons without a work (`derived`, `own`). A
-// number's source is written as a call, cim("ExcSEXS") or own("twice the rating").
+// Sources of the effects' numbers: cited works, and `derived` and `own` for numbers without a cited work. A
+// number's source is written as a function call: cim("ExcSEXS") or own("twice the rating").
 #include <string>
 #include <string_view>
 
@@ -19,13 +19,13 @@ struct Source {
 /// A cited work.
 struct Work {
   std::string_view id, author, edition, title, where;  ///< edition: year, version or commit
-  /// Citation of a place in the work.
+  /// Returns the citation of a place in the work.
   constexpr Source operator()(std::string_view place) const { return {this, place}; }
-  /// Whether it is a publication, not a reason.
+  /// Whether it is a publication, not one of `derived`, `own` and `user_model`.
   [[nodiscard]] constexpr bool published() const { return !title.empty(); }
 };
 
-/// Returns the source as text, "CIM: ExcSEXS"; the place alone where the work has no id.
+/// Returns the source as text, "CIM: ExcSEXS"; without the work's id only the place.
 inline std::string as_text(const Source& source) {
   const std::string place(source.place);
   return source.work->id.empty() ? place : std::string(source.work->id) + ": " + place;
@@ -57,7 +57,7 @@ inline constexpr Work sienna{"PowerSystems.jl", "NREL", "1.8", "Validation range
 inline constexpr Work andes{"ANDES", "CURENT", "1.x", "Default values of the PSS/E models",
                             "github.com/CURENT/andes, andes/models"};
 
-// The case files: .dyr and PSS/E models of public projects.
+// Case files: .dyr files and PSS/E models of public projects.
 inline constexpr Work psid{"PowerSimulationsDynamics.jl", "NREL", "d94d74e", "PSS/E test cases",
                            "github.com/NREL-Sienna/PowerSimulationsDynamics.jl, test/benchmarks/psse"};
 inline constexpr Work openipsl{"OpenIPSL", "ALSETLab", "fe8aa5c", "Single-machine tests of the PSS/E models",

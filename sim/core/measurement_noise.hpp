@@ -5,7 +5,7 @@
 //   speed [pu]                                 L/20: a toothed wheel is timed, not sampled; 3 mHz at 0.1 %
 // Phasor instruments are rated by total vector error: an error of L across the phasor is L in magnitude and
 // L rad in angle. IEEE C37.118.1 allows 1 %; good instruments have 0.1 % to 0.5 %.
-// Frequency is the filtered derivative of the angle, so its noise is theta's noise behind the same filter.
+// Frequency is the filtered derivative of the angle, so its noise is that of theta after the same filter.
 #include <cmath>
 
 namespace swingbank::sim {

@@ -1,7 +1,7 @@
 #pragma once
 // Packed<S, N>: N independent scenarios in one value (a SIMD batch). Up to a register's size it is one vector
-// of the compiler's vector extension; above that it is two halves. GCC lowers vectors wider than a register
-// through memory; the halves keep every width fast on every processor.
+// of the compiler's vector extension; above that it is two halves. GCC passes vectors that are wider than a
+// register through memory. Halves avoid this on every processor.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -15,7 +15,8 @@
 namespace swingbank::sim {
 
 #ifdef SWINGBANK_COUNT_FLOPS
-/// Count of additions, multiplications, divisions and roots of all packs, each lane one. For tests/bench.
+/// Number of additions, multiplications, divisions and roots of all packs; each lane counts separately. Used
+/// by tests/bench.
 inline thread_local std::uint64_t pack_operations = 0;
 inline void count_operations(int lanes) { pack_operations += static_cast<std::uint64_t>(lanes); }
 #else
@@ -34,7 +35,7 @@ inline constexpr std::size_t kRegisterBytes = 16;
 
 /// \cond
 template <class S, std::size_t Bytes>
-struct VectorOf;  // spelled out per width: GCC 12 drops vector_size on a dependent width
+struct VectorOf;  // one specialisation per width, because GCC 12 ignores vector_size with a dependent width
 template <class S>
 struct VectorOf<S, 16> {
   typedef S Type __attribute__((vector_size(16)));
@@ -52,7 +53,7 @@ struct VectorOf<S, 64> {
 };
 /// \endcond
 
-/// Wider than a register: two halves. S is double or float.
+/// N numbers of type S (double or float), wider than a register and therefore stored as two halves.
 template <class S, int N>
 struct Packed {
   using Half = Packed<S, N / 2>;  ///< one half of the lanes
@@ -106,7 +107,7 @@ struct Packed {
   friend bool any_positive(Packed a) { return any_positive(a.low) || any_positive(a.high); }
 };
 
-/// One register or less.
+/// N numbers that fit into one vector register.
 template <class S, int N>
 requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
   using Vector = typename VectorOf<S, sizeof(S) * N>::Type;  ///< vector of N numbers in a register
@@ -127,8 +128,8 @@ requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
   S operator[](int lane) const { return v[lane]; }       ///< value of one lane
   /// Sets one lane.
   void set(int lane, double a) { v[lane] = static_cast<S>(a); }
-  /// Loads N numbers; `from` needs no alignment. Through a vector type, because GCC copies a vector's bytes
-  /// by way of integer registers.
+  /// Loads N numbers; `from` needs no alignment. Loads a vector type, because GCC would copy bytes through
+  /// integer registers.
   static Packed load(const S* from) { return Vector(*reinterpret_cast<const InMemory*>(from)); }
   /// Stores N numbers; `to` needs no alignment.
   void store(S* to) const { *reinterpret_cast<InMemory*>(to) = v; }
@@ -211,22 +212,22 @@ inline Packed<S, N> sqrt(Packed<S, N> a) {
   }
 }
 
-/// Computed lane by lane through the C library: bitwise equal to the scalar result. Only few effects need
-/// them.
+/// Returns the exponential. The C library computes it lane by lane, so that it is bitwise equal to the scalar
+/// result. Only few effects need it.
 template <class S, int N>
 inline Packed<S, N> exp(Packed<S, N> a) {
   for (int i = 0; i < N; ++i) a.set(i, std::exp(a[i]));
   return a;
 }
-/// Returns the natural logarithm, as exp() does.
+/// Returns the natural logarithm, computed like exp().
 template <class S, int N>
 inline Packed<S, N> log(Packed<S, N> a) {
   for (int i = 0; i < N; ++i) a.set(i, std::log(a[i]));
   return a;
 }
 
-/// Rounds to the nearest integer (ties to even). Adding 1.5 * 2^52 (double) or 1.5 * 2^23 (float) leaves no
-/// room for a fraction. |a| must stay below 2^51 (double) or 2^22 (float).
+/// Rounds to the nearest integer (ties to even). Adding 1.5 * 2^52 (double) or 1.5 * 2^23 (float) rounds the
+/// fraction away. |a| must stay below 2^51 (double) or 2^22 (float).
 template <class S, int N>
 inline Packed<S, N> round_nearest(Packed<S, N> a) {
   if constexpr (!Packed<S, N>::one_register) {
@@ -238,7 +239,8 @@ inline Packed<S, N> round_nearest(Packed<S, N> a) {
   }
 }
 
-/// Rotates sine and cosine of the remainder by k quarter turns: `s`, `c` of the whole angle.
+/// Computes sine `s` and cosine `c` of an angle from `sine` and `cosine` of its remainder after k quarter
+/// turns.
 template <class S, int N>
 inline void turn(Packed<S, N> k, Packed<S, N> sine, Packed<S, N> cosine, Packed<S, N>& s, Packed<S, N>& c) {
   if constexpr (!Packed<S, N>::one_register) {
@@ -279,8 +281,9 @@ inline Packed<S, N> with_sign(Packed<S, N> a, Packed<S, N> b) {
   }
 }
 
-/// Computes sine and cosine together, at most 2 ulp for |a| < 1e5 rad. Reduction by multiples of pi/2 in
-/// three parts; minimax coefficients from Moshier's Cephes library (sin.c).
+/// Computes sine and cosine together, with an error of at most 2 ulp for |a| < 1e5 rad. The argument is
+/// reduced by multiples of pi/2 in three parts. The minimax coefficients are from Moshier's Cephes library
+/// (sin.c).
 template <int N>
 inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
   using P = Pack<N>;
@@ -313,8 +316,8 @@ inline void sincos(Pack<N> a, Pack<N>& s, Pack<N>& c) {
   turn(k, ps, pc, s, c);
 }
 
-/// Four-quadrant arctangent [rad], at most 2 ulp; 0 where both arguments are 0. Reduction and rational
-/// approximation from Moshier's Cephes library (atan.c).
+/// Returns the four-quadrant arctangent [rad] with an error of at most 2 ulp, or 0 if both arguments are 0.
+/// Reduction and rational approximation are from Moshier's Cephes library (atan.c).
 template <int N>
 inline Pack<N> atan2(Pack<N> y, Pack<N> x) {
   using P = Pack<N>;

@@ -1,6 +1,6 @@
 #pragma once
 // Scalar types of the equations, and the functions that equations may apply to them: + - * / < > <=, select,
-// sqrt, exp, log, sincos, atan2 (steady only), square, positive_part, clamp.
+// sqrt, exp, log, sincos, atan2 (only in steady()), square, positive_part, clamp.
 #include <cmath>
 #include <tuple>
 
@@ -9,12 +9,12 @@
 
 namespace swingbank::sim {
 
-/// Number of sensitivities carried by one dual.
+/// Number of sensitivity parameters of a dual number.
 constexpr int kSensitivities = 8;
 using D8 = Dual<double, kSensitivities>;  ///< double with sensitivities
 using P4 = Pack<4>;                       ///< four doubles
 using P8 = Pack<8>;                       ///< eight doubles
-/// Scenarios in one batch with sensitivities. More than one register's worth would not fit the L1 cache.
+/// Number of lanes of a SIMD batch with sensitivities. More lanes would exceed the L1 cache.
 constexpr int kDualLanes = kRegisterBytes == 64 ? 8 : 4;
 using DualPack = Dual<Pack<kDualLanes>, kSensitivities>;  ///< SIMD batch with sensitivities
 
@@ -26,7 +26,7 @@ inline void sincos(double a, double& s, double& c) {
   s = std::sin(a);
   c = std::cos(a);
 }
-/// The same with derivatives.
+/// Computes sine and cosine of a [rad], with derivatives.
 template <class T, int N>
 inline void sincos(const Dual<T, N>& a, Dual<T, N>& s, Dual<T, N>& c) {
   T sa, ca;
@@ -80,24 +80,23 @@ inline T clamp(const T& a, const T& low, const T& high) {
   return select(a < low, low, select(high < a, high, a));
 }
 
-/// Returns the plain value of any scalar (lane 0 of a pack). Only for messages and for branches in double
-/// code.
+/// Returns the plain value of any scalar (lane 0 of a pack). Use it only in messages and in `if` conditions
+/// of code that runs in double.
 inline double value_of(double a) { return a; }
-/// The same for a SIMD batch: the first lane.
+/// Returns the value of the first lane.
 template <class S, int N>
 inline double value_of(const Packed<S, N>& a) {
   return a[0];
 }
-/// The same for a dual: the value.
+/// Returns the value without its derivatives.
 template <class T, int N>
 inline double value_of(const Dual<T, N>& a) {
   return value_of(a.a);
 }
 
-/// Whether any lane is above zero. Used to skip terms that no lane needs; lanes without the term must add
-/// zero.
+/// Whether any lane is above zero. Equations use it to skip a term that is zero in every lane.
 inline bool any_positive(double a) { return a > 0.0; }
-/// The same for a dual: its value.
+/// Whether the value of any lane is above zero.
 template <class T, int N>
 inline bool any_positive(const Dual<T, N>& a) {
   return any_positive(a.a);

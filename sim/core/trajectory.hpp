@@ -18,7 +18,7 @@ constexpr std::string_view outcome_name(Outcome o) {
   return names[static_cast<int>(o)];
 }
 
-/// Allocator on cache-line boundaries, so that a pack of samples is one whole line.
+/// Allocator that aligns memory to cache lines, so that a pack of eight samples fills one line exactly.
 template <class T>
 struct CacheAligned {
   using value_type = T;                         ///< element type, as the allocator requirements demand
@@ -27,8 +27,8 @@ struct CacheAligned {
   /// Converts from the allocator of another element type; allocators have no state.
   template <class U>
   CacheAligned(const CacheAligned<U>&) {
-  }  // NOLINT(google-explicit-constructor): the allocator protocol asks for it
-  /// Memory for n elements, on a cache line.
+  }  // NOLINT(google-explicit-constructor): required by the allocator protocol
+  /// Allocates memory for n elements, aligned to a cache line.
   T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kLine)); }
   void deallocate(T* p, std::size_t) { ::operator delete(p, kLine); }  ///< releases memory from allocate()
   /// All allocators are equal.
@@ -45,11 +45,11 @@ struct Trajectory {
   std::vector<Channel> channels;  ///< recorded channels, the same for each plant
   std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
   int sensitivity_parameters = 0;                    ///< number of sensitivity parameters
-  /// Sensitivities, as `values`, one block per parameter: see sensitivity().
+  /// Sensitivities: one block per parameter, with the layout of `values`; see sensitivity().
   std::vector<double, CacheAligned<double>> sensitivities;
   Outcome outcome = Outcome::stable;  ///< how the simulation ended
-  double stopped_at = 0.0;            ///< [s]: t_end, or the time at which synchronism was lost
-  double largest_spread = 0.0;        ///< largest change of a rotor angle difference since the start [rad]
+  double stopped_at = 0.0;            ///< end of the simulation [s]: t_end, or the time of an early end
+  double largest_spread = 0.0;  ///< maximum change of the angle between two rotors since the start [rad]
 
   /// Returns the number of rows, plants times channels.
   [[nodiscard]] int rows() const { return static_cast<int>(plants.size() * channels.size()); }
@@ -60,7 +60,7 @@ struct Trajectory {
     values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
     sensitivities.resize(values.size() * static_cast<std::size_t>(sensitivity_parameters));
   }
-  /// Returns the sensitivity of at(plant, channel) to parameter number `parameter`.
+  /// Returns the samples of the sensitivity of at(plant, channel) to parameter number `parameter`.
   [[nodiscard]] double* sensitivity(int parameter, int plant, int channel) {
     return sensitivities.data() +
            static_cast<std::ptrdiff_t>(parameter * rows() + plant * static_cast<int>(channels.size()) +
@@ -77,7 +77,7 @@ struct Trajectory {
   [[nodiscard]] const double* row(int i) const {
     return values.data() + static_cast<std::ptrdiff_t>(i) * stride;
   }
-  /// Returns the samples of a channel of a plant, both as indices into `plants` and `channels`.
+  /// Returns the samples of one channel of one plant. The arguments are indices into `plants` and `channels`.
   [[nodiscard]] double* at(int plant, int channel) {
     return row(plant * static_cast<int>(channels.size()) + channel);
   }

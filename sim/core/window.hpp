@@ -1,5 +1,5 @@
 #pragma once
-// Moving averages of uniform samples over a window in seconds, so that the result is independent of the
+// Moving averages of uniform samples over a window given in seconds, so that the result is independent of the
 // sampling rate.
 #include <algorithm>
 #include <array>
@@ -19,16 +19,16 @@ inline double cubic_convolution(double u) {
   return a < 2.0 ? ((-0.5 * a + 2.5) * a - 4.0) * a + 2.0 : 0.0;
 }
 
-/// Returns the weights of the samples k = 0, 1, ... on either side for the average with an even window w(t),
-/// |t| < half [s]. The curve through the samples is a cubic convolution; `step` [s]. Weight 0 plus twice the
-/// others is 1. half = 0: {1}.
+/// Returns the weights of the samples at distance k = 0, 1, ... for an average with the even window w(t),
+/// |t| < half [s]. Between the samples, `step` [s] apart, the curve is interpolated by cubic convolution. The
+/// weights are normalised: weight 0 plus twice the sum of the others is 1. half = 0 gives {1}.
 template <class Window>
 std::vector<double> window_weights(const Window& w, double half, double step) {
   constexpr std::array<double, 4> place = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
                                            0.9602898564975363};  // Gauss-Legendre, 8 points
   constexpr std::array<double, 4> weight = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
                                             0.1012285362903763};
-  const double reach = half / step;  // in samples, as everything below
+  const double reach = half / step;  // all distances below are in samples
   const auto integral = [&](double a, double b, double k) {
     double sum = 0.0;
     const double middle = 0.5 * (a + b), radius = 0.5 * (b - a);
@@ -53,7 +53,8 @@ std::vector<double> window_weights(const Window& w, double half, double step) {
   return weights;
 }
 
-/// Returns the moving averages. Outside the samples the curve is constant. T: double or complex.
+/// Returns the moving averages of `y` with the weights of window_weights(). Beyond the ends the first and
+/// last samples are repeated. T: double or complex.
 template <class T>
 std::vector<T> averaged(const std::vector<T>& y, const std::vector<double>& weights) {
   const auto last = static_cast<std::ptrdiff_t>(y.size()) - 1;
