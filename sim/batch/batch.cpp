@@ -37,8 +37,8 @@ struct EngineOf final : Engine {
 }  // namespace detail
 
 namespace {
-/// Refuses effects that cannot run in single precision: user-defined models, and sources with Newton's method
-/// (algebra.hpp), whose tolerance of 1e-13 a float cannot represent.
+/// Refuses effects that cannot run in single precision: user-defined models, and sources that need Newton's
+/// method (algebra.hpp). A float cannot represent its tolerance of 1e-13.
 void refuse_in_float(const grid::Grid& grid) {
   Problems problems;
   const auto refuse = [&](const std::string& what, const std::string& why) {

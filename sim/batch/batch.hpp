@@ -1,7 +1,7 @@
 #pragma once
 // Batch integrator with independent SIMD lanes. The method is Dormand-Prince 5(4). Each lane of a pack
 // integrates its own event with its own time, step size and step acceptance, and takes the next job from the
-// queue. Lanes share no arithmetic, so a result does not depend on its lane or batch, bit by bit.
+// queue. Lanes share no arithmetic, so each result is bitwise independent of its lane and batch.
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,18 +20,19 @@ struct BatchOptions {
   double tolerance = 1e-6;            ///< error per step, weighted maximum norm over the states
   std::vector<int> plants;            ///< recorded plants; empty: all
   std::vector<Channel> channels;      ///< recorded channels; empty: all of kChannels
-  int lanes = 0;  ///< 1, 4 or 8 in double, 16 in float (decision 02); 0: the widest in double of this build
-  /// Loss of synchronism: a run ends when the angle between two rotors of one island has changed by this
-  /// much.
+  int lanes = 0;  ///< 1, 4 or 8 in double, 16 in float (decision 02); 0: 4 or 8, by the register size
+  /// Limit of synchronism: a run ends when the angle between two rotors of one island has changed by more
+  /// than this.
   double lose_at = constants::pi;  ///< [rad]
   bool sensitivities = false;      ///< compute derivatives with respect to Job::seeds, in kDualLanes lanes
 };
 
-/// A sensitivity parameter. The step control weights the sensitivity times `scale` like the value itself.
+/// A sensitivity parameter. Sensitivities are computed per `scale`, not per unit of the parameter, so that
+/// the step size control applies one tolerance to value and sensitivity.
 struct Seed {
   int plant;                     ///< index of the plant in the grid
   plant::ParameterId parameter;  ///< parameter of the machine, the transformer or a control
-  double scale;                  ///< [unit of the parameter]
+  double scale;                  ///< change that counts as 1 [unit of the parameter]
 };
 
 /// One simulation: its event and the plants' parameters. Unlisted plants have the parameters of the grid.

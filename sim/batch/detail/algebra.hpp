@@ -2,9 +2,9 @@
 // Batch kernel: sources whose current is a nonlinear function of the voltage (loads with a dynamic model,
 // machines with saliency, converters). Each is represented by E = V + z I(V) behind its constant impedance z,
 // so that the network equation remains I = (G + jB) E. Newton's method solves for the voltages V at these
-// sources. Each lane stops at its own convergence, so that its bits do not depend on other lanes. V is the
-// machine's own terminal voltage: with a step-up transformer of ratio n the network has n E, and the machine
-// n I.
+// sources. Each lane stops when its own voltages have converged, so that its result is bitwise independent of
+// the other lanes. V is the voltage at the machine's terminal. With a step-up transformer of ratio n, the
+// network has the source voltage n E, and the machine has the current n I.
 #include "sim/batch/detail/batch_kernel.hpp"
 
 namespace swingbank::sim::batch {
@@ -93,7 +93,7 @@ void solve_factored(const T* a, T* b, std::size_t n) {
 }
 
 /// Computes the residual of V - (E(V) - z (G + jB) E(V)) = 0 into algebra_[0 .. 2K), for K nonlinear sources.
-/// steady: currents of the linear sources.
+/// `steady`: currents that the linear sources cause.
 template <class T>
 void BatchKernel<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
   const std::size_t count = nonlinear_.size();
@@ -126,7 +126,7 @@ void BatchKernel<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
   }
 }
 
-/// Computes the Jacobian of that residual with respect to V into a; call after algebra_rest. dE/dV is a
+/// Computes the Jacobian of this residual with respect to V into `a`; call after algebra_rest(). dE/dV is a
 /// difference quotient, whose error only slows the convergence.
 template <class T>
 void BatchKernel<T>::algebra_jacobian(const Constants& k, const T* x, T* a) {
@@ -196,13 +196,14 @@ typename BatchKernel<T>::Flat BatchKernel<T>::newton_step(Constants& k, const T*
 
 /// Convergence monitor of one lane's Newton iteration.
 struct LaneSearch {
-  double last = 0.0;  ///< size of the previous step; 0: none
+  double last = 0.0;  ///< size of the previous step [pu]; 0: none
   int calm = 0;       ///< number of short steps with new factors
 
-  /// Returns true after the last step, when the voltages have converged. `anew`: the step used factors of its
-  /// own starting point. Sets `slow` if the factors need renewal.
+  /// Returns true if the voltages have converged after a step of size `step` [pu]. `anew`: the step used
+  /// factors that were computed at its starting point. `more`: number of additional steps after convergence.
+  /// Sets `slow` if the factors need renewal.
   bool found(double step, bool anew, int more, bool& slow) {
-    constexpr double near = 1e-7;     // [pu]: the error after a step this short with new factors is 1e-13
+    constexpr double near = 1e-7;     // [pu]; after such a short step with new factors, the error is 1e-13
     constexpr double left = 1e-13;    // tolerance of the voltages [pu]
     constexpr double slowest = 0.02;  // largest convergence rate accepted with old factors
     const bool known = last > 0.0;
@@ -217,12 +218,12 @@ struct LaneSearch {
 };
 
 /// Runs Newton's method in the lanes of `open`, starting from the voltages in k. Returns the lanes that did
-/// not converge. Factors are reused across searches as long as they converge fast enough: a factorisation
-/// costs O(K^3), a step O(K^2). The factors of a lane depend only on its own history.
+/// not converge. Factors are reused in later searches as long as the iteration converges fast enough: a
+/// factorisation costs O(K^3), a step O(K^2). The factors of a lane depend only on its own history.
 template <class T>
 unsigned BatchKernel<T>::search_voltages(Constants& k, const T* x, unsigned open) {
   constexpr int limit = 40, patience = 8;
-  constexpr double longest = 0.3;  // [pu]: a constant-power load may cause too large first steps
+  constexpr double longest = 0.3;  // [pu], because a constant-power load may cause too large first steps
   // The difference quotients still affect the derivatives after the last Newton step. Dual numbers therefore
   // take two more steps and always use new factors.
   constexpr int more = Traits::sensitivities > 0 ? 2 : 0;
@@ -253,7 +254,7 @@ unsigned BatchKernel<T>::search_voltages(Constants& k, const T* x, unsigned open
   return open;
 }
 
-/// Sets the initial voltage of the next search in some lanes to the same value [pu] everywhere.
+/// Sets the initial voltage of the next search to `voltage` [pu] at every nonlinear source of some lanes.
 template <class T>
 void BatchKernel<T>::begin_search(Constants& k, unsigned lanes, double voltage) const {
   const auto these = Traits::mask(lanes);
@@ -264,8 +265,9 @@ void BatchKernel<T>::begin_search(Constants& k, unsigned lanes, double voltage) 
   k.factored &= ~lanes;
 }
 
-/// Solves for the voltages at the nonlinear sources, starting from the previous solution. If this fails it
-/// starts from zero: a prescribed current next to a fault has no other solution (decision 37).
+/// Solves for the voltages at the nonlinear sources, starting from the previous solution. If this fails, it
+/// restarts from zero voltage, because a prescribed current next to a fault may have no other solution
+/// (decision 37).
 template <class T>
 void BatchKernel<T>::solve_algebra(Constants& k, const T* x) {
   constexpr unsigned all = (1U << kLanes) - 1U;

@@ -25,8 +25,8 @@ class BatchKernel {
  public:
   static constexpr int kLanes = LaneTraits<T>::lanes;
   static constexpr int kWaiting =
-      8 * kLanes;  ///< samples evaluated together, to broadcast the constants only once
-  static constexpr int kBufferSamples = kWaiting + 4 * kLanes;  ///< buffer size in samples, in whole packs
+      8 * kLanes;  ///< samples evaluated together, so that constants are broadcast only once
+  static constexpr int kBufferSamples = kWaiting + 4 * kLanes;  ///< buffer size [samples], whole packs
   using Next = std::function<bool(Job&)>;
   using Done = std::function<void(const Job&, const Trajectory&)>;
 
@@ -37,14 +37,15 @@ class BatchKernel {
   using Traits = LaneTraits<T>;
   using Flat = typename Traits::Flat;
   using Real = typename Traits::Real;
-  /// Compensated summation of the states, used in single precision.
+  /// Whether the states are added with compensated summation, as in single precision.
   static constexpr bool kCarries = std::is_same_v<Real, float>;
   /// Factor of dp54::kink in the error estimate. 0.03 would bound the error of a kink by the tolerance; this
   /// value bounds it by ten times the tolerance.
   static constexpr double kKinkShare = 0.003;
-  /// Minimum weight of a state in the kink error: the error is visible at once, even if it decays quickly.
+  /// Minimum weight of a state in the kink error, because the record shows this error even if it decays
+  /// quickly.
   static constexpr double kKinkWeight = 0.3;
-  static constexpr std::size_t kFlats = 1 + Traits::sensitivities;  ///< number of flats in one T
+  static constexpr std::size_t kFlats = 1 + Traits::sensitivities;  ///< number of Flat values in one T
   struct PlantSlice {
     plant::PlantEquations<T> equations;
     int x, c, m;        ///< offsets of states, coefficients and scratch
@@ -53,12 +54,12 @@ class BatchKernel {
     bool rotor = true;  ///< true if its first state is a rotor angle; false for a converter
   };
 
-  /// An exciter with a stabiliser. Stages with bitwise equal Vs show whether Vs reaches or leaves its limits
-  /// within a step.
+  /// Detection of kinks in an exciter with a stabiliser. The stabiliser's output Vs has a kink where it
+  /// reaches or leaves its limits. At a limit, successive stages have bitwise equal Vs.
   struct Watch {
     int first, count;              ///< states of the exciter
     Flat start{}, last{};          ///< Vs at the start of the step and at the last stage
-    Flat rested{}, rested_next{};  ///< 1 if Vs was constant before this step, before the next one
+    Flat rested{}, rested_next{};  ///< 1 if the last stage kept Vs: of the previous step; of this step
     Flat same{};                   ///< number of stages with Vs unchanged from the previous stage
   };
 
@@ -82,14 +83,14 @@ class BatchKernel {
     int lane, count;
   };
 
-  /// Inputs of the equations other than the states. One set, for integration, has one event per lane. The
-  /// other, for recording, has one event's values in every lane; its lanes are consecutive samples.
+  /// Inputs of the equations other than the states. The set for integration has one event per lane. The set
+  /// for recording has the values of one event in every lane; its lanes are consecutive samples.
   struct Constants {
     std::vector<T> c, g, b, efd, tm, dvref, dpref, on;  ///< on: 1, or 0 if the plant is tripped
-    std::vector<T> far_g, far_b;                        ///< see InternalMatrix
-    std::vector<T> vr, vi;   ///< terminal voltages of nonlinear sources: start of the next search [pu]
+    std::vector<T> far_g, far_b;                        ///< rows of remote measurements, see InternalMatrix
+    std::vector<T> vr, vi;   ///< voltages at nonlinear sources: start of the next search [pu]
     T last_moment;           ///< upper bound of the time passed to effects [s]
-    std::vector<T> factors;  ///< factors of the Newton matrix, of a different age in each lane
+    std::vector<T> factors;  ///< factors of the Newton matrix; each lane renews its own
     unsigned factored = 0;   ///< lanes with valid factors
     unsigned fallen = 0;     ///< lanes whose search restarted from zero voltage in this step
   };
@@ -183,15 +184,15 @@ class BatchKernel {
   SharedNetwork<T> shared_;                             ///< used if shares_
   std::optional<SwitchedNetwork> switched_;             ///< used if shares_
   std::optional<InternalMatrix> own_matrix_;            ///< computed on demand
-  bool whole_record_ = false;          ///< if shares_: all currents cost less than the recorded plants' rows
-  Terminals terminals_;                ///< if shares_: connections in the segment that a lane enters
-  std::vector<double> own_r_, own_x_;  ///< if shares_: impedances of the grid's own machines [pu]
+  bool whole_record_ = false;              ///< if shares_: all currents cost less than the recorded rows
+  Terminals terminals_;                    ///< if shares_: connections in the segment that a lane enters
+  std::vector<double> own_r_, own_x_;      ///< if shares_: impedances of the grid's own machines [pu]
   std::vector<SharedRows> recorded_rows_;  ///< if shares_: rows of the recorded plants, per lane
   std::vector<PlantSlice> plants_;
   std::vector<LoadSlice> loads_;
   std::vector<Watch> watched_;
   std::vector<int> nonlinear_;            ///< nonlinear sources: plants, then loads
-  bool limited_ = false, timed_ = false;  ///< true if any state has limits, if any effect depends on time
+  bool limited_ = false, timed_ = false;  ///< true if any state has limits; if any effect depends on time
   bool shares_ = false;                   ///< true if the lanes share one matrix (grids of many sources)
   std::vector<int> stopped_;              ///< states with limits
   std::vector<int> kinked_;               ///< states with a kink error estimate in every step (State::bends)
@@ -202,7 +203,7 @@ class BatchKernel {
   std::vector<int> wanted_, sampled_;  ///< states that the outputs need; the moving ones among them
   std::vector<char> needed_;           ///< per state: 1 if the outputs need it
   std::vector<std::pair<std::size_t, std::size_t>>
-      broadcast_;  ///< coefficients of the outputs: first, number
+      broadcast_;  ///< coefficients that the outputs need: first, number
   std::vector<int> recorded_;
   std::vector<Channel> channels_;
   int n_ = 0, sources_ = 0, samples_ = 0, states_ = 0;
@@ -212,7 +213,7 @@ class BatchKernel {
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;   ///< scratch of one evaluation
   std::vector<T> ir_, ii_;       ///< scratch, if shares_
-  Signals<T> signals_;           ///< scratch, because zeroing one per plant would write 25 packs
+  Signals<T> signals_;           ///< scratch of all plants; one per plant would zero 25 packs
   std::vector<T> algebra_;       ///< scratch of newton_step
   std::vector<T> steady_;        ///< currents of the linear sources at the nonlinear ones
   T time_{}, start_{};           ///< time of the evaluation, start of the step [s]

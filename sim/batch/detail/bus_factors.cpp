@@ -59,7 +59,7 @@ bool BusFactors::eliminate(const Sparse& admittance) {
 }
 
 /// Reorders the buses by their height in the elimination tree. Buses of equal height are independent, so that
-/// the processor executes several at once.
+/// the processor can overlap their operations.
 void BusFactors::by_height() {
   const std::size_t n = order_.size();
   std::vector<int> height(n, 0), sorted(n);

@@ -12,14 +12,14 @@ namespace swingbank::sim::batch {
 class BusFactors {
  public:
   using Sparse = Eigen::SparseMatrix<Complex>;
-  /// Factorises without pivoting, which admittance matrices that include the machines' own admittances seldom
-  /// need. Returns false if the matrix needs pivoting.
+  /// Factorises without pivoting. Admittance matrices that include the machines' own admittances seldom need
+  /// it. Returns false if this matrix does.
   bool factor(const Sparse& admittance);
   [[nodiscard]] std::size_t buses() const { return inverse_.size(); }
   [[nodiscard]] std::size_t entries() const { return lower_.entries.size() + upper_.entries.size(); }
   /// Returns the position of a bus in the arrays of currents and voltages.
   [[nodiscard]] int place(int bus) const { return place_[static_cast<std::size_t>(bus)]; }
-  /// Replaces the currents by the voltages, in place.
+  /// Replaces the injected currents by the bus voltages, in place.
   template <class T>
   void solve(T* real, T* imaginary) const;
 

@@ -24,7 +24,7 @@ struct FarRows {
   int voltage = -1;             ///< row of the regulated bus
   int near = -1, current = -1;  ///< rows of the measured branch: voltage and current at its near end
 };
-/// Returns the row indices per plant; sets `rows` to the number of rows.
+/// Returns the row indices per plant, and sets `rows` to the number of rows.
 std::vector<FarRows> far_rows(const grid::Grid& grid, int& rows);
 
 /// Matrix of I = (G + jB) E, row-major, with a row and a column per source: plants, then loads with a dynamic
@@ -57,9 +57,9 @@ class InternalNetwork {
  public:
   explicit InternalNetwork(const grid::Grid& grid);
   [[nodiscard]] int sources() const { return static_cast<int>(node_of_.size()); }
-  /// Returns the matrix of a topology. r, x: impedance per source [pu on its own base]. The reference is
-  /// valid until the next call with other impedances; for unchanged impedances matrices are cached per
-  /// topology.
+  /// Returns the matrix of a topology. r, x: impedance per source [pu on its own base]. The matrix of each
+  /// topology is cached until its impedances change. The reference is valid until the next call for this
+  /// topology with other impedances.
   const InternalMatrix& matrix(const network::Topology& topology, const std::vector<double>& r,
                                const std::vector<double>& x);
 

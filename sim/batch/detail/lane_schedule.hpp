@@ -21,7 +21,8 @@ struct LaneClock {
     last_error = 1.0F;
     next = next_switch;
   }
-  /// Returns the step size to try [s]: the rest of the segment, or half of it to avoid a tiny last step.
+  /// Returns the step size to try [s]: h, or the rest of the segment, or half of the rest to avoid a tiny
+  /// last step. Sets `reaches` if the step ends the segment.
   [[nodiscard]] double step(bool& reaches) const {
     const double rest = next - t;
     reaches = h >= 0.999 * rest;

@@ -160,7 +160,8 @@ void BatchKernel<T>::load_consumer(int lane, std::size_t load) {
   lane_x_[static_cast<std::size_t>(lane)][source] = z[plant::load_x];
 }
 
-/// Selects the operating point of a lane's job. Consecutive jobs mostly share one, so it is reused.
+/// Selects the operating point of a lane's job. It is reused, because consecutive jobs mostly have the same
+/// operating point.
 template <class T>
 void BatchKernel<T>::choose_state(int lane) {
   const auto& wanted = lanes_[static_cast<std::size_t>(lane)].job.grid;
@@ -200,7 +201,7 @@ void BatchKernel<T>::load(int lane) {
   run.clock.t = 0.0;
 }
 
-/// Finds the states that move in some lane; the others are constant through every step.
+/// Finds the states that move in some lane. The others are constant in every step and are not integrated.
 template <class T>
 void BatchKernel<T>::find_moving() {
   const auto zero = [this](int coefficient) {
@@ -220,7 +221,7 @@ void BatchKernel<T>::find_moving() {
   trial_ = y_;
 }
 
-/// Determines whether some lane weights a state more than its effect's default.
+/// Determines whether any lane weights a state more than State::weight.
 template <class T>
 void BatchKernel<T>::find_weights() {
   weighs_ = std::ranges::any_of(weighed_, [this](const Weighed& w) {
@@ -259,7 +260,8 @@ void BatchKernel<T>::load_seeded(int lane, const std::map<int, plant::Plant>& ch
   }
 }
 
-/// Returns the last time before a discontinuity of effects at `switching_time`, in the lane's precision [s].
+/// Returns the last time [s] at which effects are evaluated before a discontinuity at `switching_time`. It is
+/// representable in the lanes' precision.
 template <class Real>
 double moment_before(double switching_time) {
   if constexpr (std::is_same_v<Real, float>)

@@ -30,8 +30,8 @@ struct Rest {
     return at;
   }
 
-  /// Subtracts the outer product of the pivot's column, divided by the pivot, and its row, and adds it to
-  /// `out`.
+  /// Moves one outer product from the remainder to `out`: the pivot's column, divided by the pivot, times the
+  /// pivot's row.
   void eliminate(std::size_t pivot, LowRank& out) {
     const std::size_t row = pivot / n, column = pivot % n;
     const double scale = 1.0 / square(g[pivot], b[pivot]);

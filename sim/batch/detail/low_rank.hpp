@@ -7,7 +7,8 @@
 
 namespace swingbank::sim::batch {
 
-/// The sum of outer products sum_k u_k w_k^T; real and imaginary parts of the vectors, one after the other.
+/// A sum of outer products sum_k u_k w_k^T. The vectors are stored one after the other, as real and imaginary
+/// parts.
 struct LowRank {
   int rank = 0;
   std::vector<double> ur, ui, wr, wi;  ///< [k][row], [k][column]
@@ -20,7 +21,7 @@ struct LowRank {
 };
 
 /// Returns matrix - from as outer products, by elimination with full pivoting until the largest remaining
-/// entry is at rounding level. Returns none if this needs more than `most` products.
+/// entry is a rounding error. Returns none if this needs more than `most` products.
 std::optional<LowRank> difference(const InternalMatrix& matrix, const InternalMatrix& from, int most);
 
 struct ImpedanceChange {
@@ -32,8 +33,8 @@ struct ByRowsAndColumns {
   std::function<Eigen::VectorXcd(int)> row, column;
 };
 /// Adds to `products` the update of M = matrix + products by changed impedances of the sources C (Woodbury):
-/// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:]. This avoids a solution of the whole network for every set of
-/// machines.
+/// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:]. This avoids a solution of the whole network for every set of machine
+/// parameters.
 void add_impedances(LowRank& products, const ByRowsAndColumns& matrix,
                     const std::vector<ImpedanceChange>& changes);
 void add_impedances(LowRank& products, const InternalMatrix& matrix,

@@ -18,13 +18,14 @@ inline void row_times(const T* g, const T* b, const T* er, const T* ei, int colu
   ii = gi + br;
 }
 
-/// Rows of a matrix that all lanes share. It multiplies several rows at once, so that E is loaded only once.
+/// Rows of a matrix that all lanes share. Several rows are multiplied together, so that E is loaded only once
+/// for them.
 class SharedRows {
  public:
 #ifdef __AVX512F__
   static constexpr std::size_t kTogether = 4;
 #else
-  static constexpr std::size_t kTogether = 2;  ///< four sums per row: limit of sixteen registers
+  static constexpr std::size_t kTogether = 2;  ///< four sums per row, in sixteen registers
 #endif
   /// Returns the size of ir and ii that `times` requires for a number of rows.
   static std::size_t padded(std::size_t rows) { return (rows + kTogether - 1) / kTogether * kTogether; }

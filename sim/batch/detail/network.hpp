@@ -33,7 +33,8 @@ void BatchKernel<T>::share() {
 }
 
 /// Returns the matrix of the unswitched grid. Its size is quadratic and its cost cubic in the number of
-/// sources. It is therefore computed only without sparse factors or after the trip of a generator.
+/// sources. It is therefore computed only if there are no sparse factors, or for a switching without an
+/// update by SwitchedNetwork, such as the trip of a generator.
 template <class T>
 const InternalMatrix& BatchKernel<T>::own_matrix() {
   if (!own_matrix_) own_matrix_ = own_->network.matrix({}, own_r_, own_x_);
@@ -112,8 +113,8 @@ std::optional<LowRank> BatchKernel<T>::few_products(int lane, const network::Top
   return products;
 }
 
-/// Sets the derivatives of M = (G + jB) with respect to a source's impedance, dM = -M[:,k] dz M[k,:]. The
-/// rows of remote measurements have their own entry k in place of M[:,k].
+/// Sets the derivatives of M = (G + jB) with respect to a source's impedance, dM = -M[:,k] dz M[k,:]. For the
+/// rows of remote measurements, their own column k replaces M[:,k].
 template <class T>
 void BatchKernel<T>::matrix_sensitivities(int lane, const InternalMatrix& matrix) {
   const auto n = static_cast<std::size_t>(sources_);

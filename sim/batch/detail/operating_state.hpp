@@ -15,7 +15,8 @@ struct OperatingState {
   explicit OperatingState(std::shared_ptr<const grid::Grid> at) : OperatingState(*at) {
     kept = std::move(at);
   }
-  /// Returns the initial state of a plant of the grid with other parameters. Throws as operating_point does.
+  /// Returns the initial state of a plant of the grid with other parameters. Throws what operating_point()
+  /// throws.
   [[nodiscard]] plant::Operating bring(const plant::Plant& plant) const;
 
   std::shared_ptr<const grid::Grid> kept;

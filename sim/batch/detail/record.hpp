@@ -29,7 +29,7 @@ void BatchKernel<T>::dense(std::size_t state, const T& h, Flat* rows) const {
 }
 
 /// Records the samples in (start, start + tried] of every accepted lane, in several rounds if a step has more
-/// samples than the buffer.
+/// samples than the buffer holds.
 template <class T>
 void BatchKernel<T>::record_step(const T& h, unsigned accepted, const double* start, const double* tried) {
   for (;;) {
@@ -39,7 +39,7 @@ void BatchKernel<T>::record_step(const T& h, unsigned accepted, const double* st
       const auto& run = lanes_[static_cast<std::size_t>(l)];
       const int left = samples_until(run.clock.t) - run.recorded - run.pending;
       const int capacity =
-          (kBufferSamples - run.pending) / kLanes * kLanes - kLanes;  // whole packs are moved
+          (kBufferSamples - run.pending) / kLanes * kLanes - kLanes;  // drop_waiting() moves whole packs
       if (left > 0) due_.push_back({l, std::min(left, capacity)});
     }
     if (due_.empty()) return;
@@ -65,7 +65,7 @@ void BatchKernel<T>::interpolate(const T& h, const double* start, const double* 
     decltype(Of::mask(0U)) later;  ///< samples that belong to this pack, not to the next
   };
   const double spacing = 1.0 / options_.rate;
-  const std::size_t flats = y_.size() * kFlats * kLanes;  // of one pack
+  const std::size_t flats = y_.size() * kFlats * kLanes;  // number of values of one pack
   std::array<Pass, kBufferSamples> passes;
   std::size_t count = 0;
   for (const Due& due : due_) {
@@ -174,7 +174,7 @@ void BatchKernel<T>::evaluate_pending(int lane, int count) {
   broadcast_constants(lane);
   for (int first = 0, now = 0; first < count; first += now) {
     const T* x = waiting_pack(run, first, wanted_, kept_.data());
-    now = std::min(kLanes - run.recorded % kLanes, count - first);  // whole packs start on a cache line
+    now = std::min(kLanes - run.recorded % kLanes, count - first);  // aligns whole packs to cache lines
     if (timed_) {
       alignas(64) double at[kLanes];
       for (int l = 0; l < kLanes; ++l) at[l] = (run.recorded + l) / options_.rate;
@@ -265,7 +265,7 @@ void BatchKernel<T>::outputs(std::size_t k, const T* x, BatchRun& run, int count
           run.theta[k] = Traits::get(v, count - 1);
           break;
         }
-        v = angle + two_pi * round_nearest((x[p.x] - angle) / two_pi);  // same turn as the rotor angle
+        v = angle + two_pi * round_nearest((x[p.x] - angle) / two_pi);  // nearest to the rotor angle
         run.theta[k] = Traits::get(v, count - 1);
         break;
       }
@@ -284,11 +284,12 @@ void BatchKernel<T>::outputs(std::size_t k, const T* x, BatchRun& run, int count
 }
 
 /// Unwraps the first `count` samples of an angle [rad]: adds the turns that minimise the step from sample to
-/// sample, from `last` on. `squared`: |V|^2 [pu]; at zero voltage the angle keeps its last value.
+/// sample, beginning with the step from `last`. `squared`: |V|^2 [pu^2]; at zero voltage the angle keeps its
+/// last value.
 template <class T>
 T BatchKernel<T>::unwrapped(T angle, const T& squared, double last, int count) const {
   constexpr double kNoAngle = 1e-9;  // below it |V| is rounding error at a bolted fault [pu]
-  T turns(0.0);                      // separate from the angle, whose derivatives it must not change
+  T turns(0.0);  // added at the end, because set() would clear the derivatives of the angle
   for (int l = 0; l < count; ++l) {
     if (Traits::get(squared, l) < kNoAngle * kNoAngle) Traits::set(angle, l, last);
     const double now = Traits::get(angle, l);

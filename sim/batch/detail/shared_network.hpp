@@ -1,8 +1,8 @@
 #pragma once
 // Network solution for grids of many sources, I = (M + sum_k u_k w_k^T) E, with one matrix for all lanes. M
-// is the grid's own matrix, stored densely or as sparse factors of the whole network. The few outer products
-// represent a lane's switching and machines. A matrix per lane would not fit into the caches. The bits of a
-// lane do not depend on other lanes, because products of other lanes add zero.
+// is the grid's own matrix, stored densely or as sparse factors of the whole network. A few outer products
+// per lane represent its switching and its machine parameters. A matrix per lane would not fit into the
+// caches. The products of other lanes add zero to a lane, so its result is bitwise independent of them.
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -18,9 +18,9 @@ namespace swingbank::sim::batch {
 template <class T>
 class SharedNetwork {
  public:
-  /// Number of sources from which it is faster than a matrix per lane.
+  /// Smallest number of sources for which a shared matrix is faster than a matrix per lane.
   static constexpr int kMany = 32;
-  /// Returns the largest number of products that cost less than a lane's own matrix.
+  /// Returns the largest number of outer products that cost less than a separate matrix.
   static constexpr int most_products(std::size_t sources) { return static_cast<int>(sources / 2); }
 
   void assign(const InternalMatrix& own);
@@ -37,7 +37,7 @@ class SharedNetwork {
   void set(int lane, const InternalMatrix& matrix);
   /// Computes all currents; ir and ii have the size SharedRows::padded.
   void solve(const T* er, const T* ei, T* ir, T* ii);
-  /// The same if all lanes of er and ei belong to the event of `lane`, whose products apply.
+  /// Computes all currents with the products of `lane`, if all lanes of er and ei belong to its event.
   void solve_of(int lane, const T* er, const T* ei, T* ir, T* ii);
   /// Returns true if a lane has a separate matrix.
   [[nodiscard]] bool whole(int lane) const { return ((whole_ >> lane) & 1U) != 0; }
@@ -57,7 +57,7 @@ class SharedNetwork {
   SharedRows rows_;
   BusFactors factors_;        ///< replaces rows_ if not empty
   std::vector<Feed> plants_;  ///< buses in the order of `factors_`
-  std::vector<T> vr_, vi_;    ///< scratch: currents into and voltages at the buses
+  std::vector<T> vr_, vi_;    ///< scratch: currents into the buses, then their voltages
   std::vector<Product> products_;
   std::vector<T> sum_r_, sum_i_;  ///< scratch: w_k^T E
   std::array<int, kLanes> rank_{};
@@ -167,8 +167,8 @@ inline void SharedNetwork<T>::solve_own(const T* er, const T* ei, T* ir, T* ii) 
   }
 }
 
-/// Adds sum_k u_k (w_k^T E). The sum is formed separately, so that a lane with fewer products adds +0, as a
-/// lane without products does.
+/// Adds sum_k u_k (w_k^T E). The sum is formed separately, so that a lane with fewer products than others
+/// adds +0 for the missing ones.
 template <class T>
 inline void SharedNetwork<T>::correct(const T* er, const T* ei, T* ir, T* ii) {
   const std::size_t n = sources_;

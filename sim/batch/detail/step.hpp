@@ -5,8 +5,8 @@
 
 namespace swingbank::sim::batch {
 
-/// Evaluates the first stage of lanes that were loaded or switched; the others reuse theirs (first same as
-/// last).
+/// Evaluates the first stage of lanes that were loaded or switched. The others reuse the last stage of their
+/// previous step (first same as last).
 template <class T>
 void BatchKernel<T>::evaluate_fresh() {
   if (timed_) {
@@ -115,7 +115,7 @@ typename BatchKernel<T>::Flat BatchKernel<T>::kink_error(std::size_t state) cons
   return worst * Flat(kKinkShare * std::max(weight_[state], kKinkWeight / options_.tolerance));
 }
 
-/// Returns the largest change since the start of the angle between two rotors, over all plants [rad].
+/// Returns the largest change of the angle between two rotors since the start [rad].
 template <class T>
 T BatchKernel<T>::angle_spread(const T* x) const {
   T low(std::numeric_limits<Real>::max()), high = -low;
@@ -134,7 +134,7 @@ T BatchKernel<T>::angle_spread(const T* x) const {
   return maximum(high - low, T(0.0));
 }
 
-/// Returns the same for a lane with several islands: the largest value within one island [rad].
+/// Returns the same for a lane with several islands [rad]. Only rotors of the same island are compared.
 template <class T>
 double BatchKernel<T>::angle_spread_within_islands(int lane) const {
   const auto l = static_cast<std::size_t>(lane);
@@ -193,8 +193,8 @@ void BatchKernel<T>::clamp_states() {
     }
 }
 
-/// Finishes a step: hands over lanes that lost synchronism or reached their end, and switches lanes at a
-/// switching time.
+/// Finishes a step: hands over runs that lost synchronism or reached their end, and starts the next segment
+/// of lanes at a switching time.
 template <class T>
 void BatchKernel<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];
@@ -218,7 +218,7 @@ void BatchKernel<T>::settle(unsigned accepted, const Next& next, const Done& don
       hand_over(l, lost ? Outcome::lost_synchronism : Outcome::stable, done);
       refill(l, next, done);
     } else if (run.clock.t >= run.clock.next) {
-      evaluate_pending(l, run.pending);  // before the matrices change
+      evaluate_pending(l, run.pending);  // with the matrices of the segment that ends
       ++run.segment;
       enter_segment(l);
     }

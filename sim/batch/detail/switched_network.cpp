@@ -7,7 +7,8 @@
 namespace swingbank::sim::batch {
 
 namespace {
-/// Smallest reciprocal condition number of the small system; below it the products lose three digits.
+/// Smallest accepted reciprocal condition number of the system of affected buses. Below it, the products lose
+/// more than three digits.
 constexpr double kLeastCondition = 1e-3;
 }  // namespace
 
@@ -80,8 +81,9 @@ std::optional<SwitchedNetwork::Touched> SwitchedNetwork::touch(const network::To
   return touched;
 }
 
-/// Returns the currents J into the affected buses per unit of their previous voltages V: J = -Y (V + Z J),
-/// and V + Z J = 0 at bolted buses. Returns none if the system is ill-conditioned.
+/// Returns the currents J into the affected buses, per unit of their voltages V without the switching. They
+/// satisfy J = -Y (V + Z J), and V + Z J = 0 at buses with a bolted fault. Returns none if the system is
+/// ill-conditioned.
 std::optional<Eigen::MatrixXcd> SwitchedNetwork::currents(const Touched& touched,
                                                           const std::vector<int>& bolted) const {
   const auto count = touched.admittance.rows();
