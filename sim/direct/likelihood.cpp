@@ -130,7 +130,8 @@ double improve(Posterior& posterior, VectorXd& z, std::span<const ParameterPrior
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
                     std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
   constexpr double kSameCost = 0.02;  // change of the cost between two linearisations
-  // Reduced chi-square and relative change of the cost of a search caught in a corner of the box.
+  // A search is stopped as trapped in a corner of the box if its reduced chi-square is above kLost and the
+  // relative change of its cost is below kCreeps.
   constexpr double kLost = 1.15, kCreeps = 0.005;
   Posterior posterior(machine, record, start, free);
   VectorXd z = posterior.start();

@@ -29,27 +29,27 @@ struct MostProbable {
 /// Effort of the maximum a posteriori estimate.
 struct LikelihoodOptions {
   int rounds = 20;        ///< number of linearisations
-  int iterations = 8;     ///< in each round
+  int iterations = 8;     ///< number of iterations in each round
   double longest = 13.0;  ///< length of the segment after the event [s]
 };
 
-/// Whether the machine's states fit into a dual of this module and its voltage is behind a constant
+/// Whether the likelihood supports the machine: at most kMostFlowing states, and a voltage behind a constant
 /// impedance.
 bool has_likelihood(const Effect& machine);
 
-/// Returns the estimate from one start. The record must state its noise and should state the event's start. A
-/// segment of fewer than kShortestStretch samples after the event returns the start.
+/// Returns the estimate from one start. The record must state its noise level and should state the event's
+/// start. With fewer than kShortestStretch samples after the event, it returns the start.
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
                            std::span<const ParameterPrior> free, const LikelihoodOptions& options = {});
-/// Returns the best estimate from several starts: the candidates, the prior's mean, then random draws, until
-/// two starts agree in cost.
+/// Returns the best estimate from several starts. It tries the candidates, then the prior's mean, then random
+/// draws, until two starts agree in cost.
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const ParameterPrior> free, const LikelihoodOptions& options = {});
 
 /// Returns the variances of the free parameters by the Bayesian Cramer-Rao bound at the true parameters. The
-/// record is free of noise and states the level that it will have. The operating point and the parameters of
-/// `free` are unknown.
+/// record is free of noise; its `noise` is the level for which the bound holds. The bound treats the
+/// operating point and the parameters of `free` as unknown.
 std::vector<double> error_bound(const Effect& machine, const Recording& record,
                                 const std::vector<double>& truth, std::span<const ParameterPrior> free,
                                 const LikelihoodOptions& options = {});

@@ -34,8 +34,8 @@ class MachinePlayback {
   [[nodiscard]] std::size_t fluxes() const { return machine_.states.size() - kAngleAndSpeed; }
   [[nodiscard]] Index outputs() const { return static_cast<Index>(steps_ * compared()); }
 
-  /// Returns the residuals over the segment. `offset`: angle relative to the steady state's; `flux`: at the
-  /// start.
+  /// Returns the residuals over the segment [pu]. `offset`: initial rotor angle minus that of the steady
+  /// state [rad]; `flux`: fluxes at the segment's start.
   template <class T>
   std::vector<T> residuals(const std::vector<T>& p, const T& offset, const std::vector<T>& flux) const {
     Machine<T> m = machine(p);
@@ -166,8 +166,8 @@ class Residuals : public ceres::CostFunction {
   VectorXd scale_;
 };
 
-/// Returns the root mean square of the residuals for the true parameters: the integration error of a
-/// single-precision record, or the noise of P before the event.
+/// Returns the RMS residual that true parameters may have [pu]: the integration error of a single-precision
+/// record, or three standard deviations of P before the event if these are larger.
 double exact(const Recording& record) {
   constexpr double kIntegration = 1e-5, kOfNoise = 3;  // [pu]; standard deviations
   const std::size_t n = std::max<std::size_t>(2, before_first_leap(record));

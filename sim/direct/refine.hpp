@@ -1,6 +1,6 @@
 #pragma once
-// Levenberg-Marquardt fit of a machine's equations to a record without noise. The voltage is played in; rotor
-// angle and speed are taken as measured. Only the flux states remain to be fitted, which decay from their
+// Levenberg-Marquardt fit of a machine's equations to a record without noise. The voltage is played in, and
+// rotor angle and speed are those of the record. Only the flux states are integrated. They decay from their
 // initial values and do not oscillate.
 #include <span>
 #include <string>
@@ -15,18 +15,19 @@ struct Refined {
   std::vector<double> p;       ///< all parameters of the effect
   double rms_error = 0;        ///< root mean square of the residuals [pu]
   int iterations = 0;          ///< number of iterations, including rejected steps
-  std::vector<int> idle = {};  ///< positions in `free` without influence on the fluxes; kept
+  std::vector<int> idle = {};  ///< positions in `free` of parameters without influence, left at their start
 };
 /// Effort of the least-squares estimate.
 struct RefineOptions {
-  int iterations = 25;   ///< including rejected steps
+  int iterations = 25;   ///< largest number of iterations, including rejected steps
   double longest = 6.0;  ///< length of the segment [s]
 };
 
 /// Fits the parameters `free` (indices) within `low` and `high`; the others keep their value in `start`.
 /// `machine`: an effect of the machine slot with its voltage behind a constant impedance. The rotor angle at
 /// the first sample and the states at the segment's start are fitted as well. H and D have no influence here.
-/// Compared at every second sample: the voltage behind the impedance, and the field current if recorded.
+/// Every second sample is compared: the current, multiplied by the reactance, and the field current if
+/// recorded.
 Refined refine(const Effect& machine, const Recording& record, std::vector<double> start,
                std::span<const int> free, std::span<const double> low, std::span<const double> high,
                const RefineOptions& options = {});

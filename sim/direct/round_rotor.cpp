@@ -87,8 +87,8 @@ struct Axes {
 
 double se(double a, double b, double psi) { return b * std::pow(std::max(psi - a, 0.0), 2) / psi; }
 
-/// Xd and saturation. The field current above E'q is (Xd - X'd)(i_d - kd td) + psi_d Se, linear in Xd - X'd
-/// and B for a given A.
+/// Xd and saturation. The field current above E'q is (Xd - X'd)(i_d - kd td) + psi_d Se, with kd = (X'd -
+/// X'')/(X'd - Xl)^2 and td = psi_1d + (X'd - Xl) i_d - E'q. It is linear in Xd - X'd and B for a given A.
 struct Field {
   double dXd = 0, A = 0, B = 0, left = 0;
 };
@@ -113,7 +113,7 @@ Field field(const VectorXd& beyond, const VectorXd& armature, const Axes& axes) 
     return f;
   };
   constexpr double kLowestKnee = -1.2,
-                   kHighestKnee = 1.0;  // A for S1.2/S1.0 from 1 up to no saturation
+                   kHighestKnee = 1.0;  // A from S1.2 = S1.0 to S1.0 = 0
   const auto found = minima([&](double A) { return at(A).left; }, kLowestKnee, kHighestKnee, kKnees);
   return at(found.front().at);
 }
@@ -132,7 +132,7 @@ Dampers dampers(double A1, double A2, double B1, double Xq, double Xl, double Xd
     if (d) *d = {Xqp, T, Tpp};
     return std::abs(small * T + Tpp * g * (dXq - m * small) - B1) + 1e-2 * std::max(-inside, 0.0);
   };
-  constexpr double kOffEnds = 0.01;  // from both ends [pu]
+  constexpr double kOffEnds = 0.01;  // distance from both ends of the interval [pu]
   const auto found = minima([&](double x) { return at(x, nullptr); }, Xdpp + kOffEnds,
                             std::max(Xq - kOffEnds, Xdpp + 2 * kOffEnds), kReactances);
   Dampers d;
@@ -144,10 +144,11 @@ struct QuadratureAxis {
   double Xq = 0, ks = 0, left = 0;
   Dampers dampers;
 };
-/// Both q-axis dampers, twice integrated:
+/// Equation of the q axis with both dampers, integrated twice:
 ///   iint psi_q = -A1 int psi_q - A2 psi_q - (Xq - X'') iint i_q - B1 int i_q
 ///                - ks iint sigma - r ks int sigma + straight line
-/// with sigma = psi_q Se and ks = (Xq - Xl)/(Xd - Xl), which converges in three iterations.
+/// with sigma = psi_q Se and ks = (Xq - Xl)/(Xd - Xl). ks depends on Xq and is iterated; three iterations
+/// suffice.
 QuadratureAxis quadrature(const Axes& axes, double step, double A, double B, const RoundRotor& r) {
   const Index n = axes.psi_q.size();
   VectorXd saturation(n);
@@ -163,7 +164,7 @@ QuadratureAxis quadrature(const Axes& axes, double step, double A, double B, con
   columns.array().rowwise() /= size.array();
   const auto qr = columns.colPivHouseholderQr();
   QuadratureAxis q;
-  q.Xq = 1.4;  // middle of the usual range
+  q.Xq = 1.4;  // start value [pu]: middle of the usual range
   VectorXd x;
   for (int pass = 0; pass < 4; ++pass) {
     q.ks = (q.Xq - r.Xl) / (r.Xd - r.Xl);

@@ -32,7 +32,7 @@ class Played {
     m_.x[0] = x[0] - u[kTheta];
     m_.evaluate(u[kV]);
   }
-  /// Requires evaluate().
+  /// Returns the compared signals; call after evaluate().
   [[nodiscard]] std::array<T, kOutputs> outputs() const {
     const auto& s = m_.s;
     return {s.Vr * s.Ir, T(0.0) - s.Vr * s.Ii, s.speed, s.Ifd};
@@ -63,7 +63,8 @@ class Played {
     evaluate(x, voltage(u));
     return derivative();
   }
-  /// Returns the voltage as T, if requested with its noise as two further parameters of a dual.
+  /// Returns the voltage as T. If `noise_` is set, the dual number has the noise of V and theta as two
+  /// further sensitivity parameters.
   [[nodiscard]] Voltage<T> voltage(const Inputs& u) const {
     Voltage<T> v = {T(u[kV]), T(u[kTheta])};
     if constexpr (!std::is_same_v<T, double>)
@@ -96,8 +97,8 @@ using OutputMatrix = Eigen::Matrix<double, kOutputs, kOutputs>;
 using StateMatrix = Eigen::Matrix<double, kMostFlowing, kMostFlowing>;
 using FromInputs = Eigen::Matrix<double, kMostFlowing, kInputs>;
 
-/// Linearised equations of a sample about the filter's state: y = C x + D n + v, x' = F x + G n, with the
-/// noise n of the played-in voltage.
+/// Linearised equations of a sample about the filter's state: y = C x + D n + v, x' = F x + G n. n is the
+/// noise of the played-in voltage, v that of the outputs.
 struct Linear {
   StateMatrix F = StateMatrix::Zero();
   FromInputs G = FromInputs::Zero();
@@ -106,7 +107,7 @@ struct Linear {
   Eigen::Matrix<double, kOutputs, 1> y;
   Gain::State next = Gain::State::Zero();
   FromInputs half = FromInputs::Zero();      ///< effect of a sample's noise on the state before the sample
-  StateMatrix unsure = StateMatrix::Zero();  ///< covariance of a step between the samples
+  StateMatrix unsure = StateMatrix::Zero();  ///< covariance due to a voltage step before the next sample
 };
 
 class Linearised {
@@ -168,21 +169,22 @@ class Linearised {
       for (int j = 0; j < kInputs; ++j) l.G(row, j) = x[i].d[kMostFlowing + static_cast<std::size_t>(j)];
     }
   }
-  /// Half of the effect of a sample's noise occurs before the sample, half after it. The state is counted
-  /// without the first half, so that the equations keep their form.
+  /// Half of the effect of a sample's noise occurs before the sample, half after it. The state excludes the
+  /// first half, so that the equations keep their form.
   static void halve(Linear& l) {
     l.half = 0.5 * l.G;
     l.D += 0.5 * l.C * l.G;
     l.G = (0.5 * (l.F * l.G + l.G)).eval();
   }
-  /// Adds the covariance of a step of `h` seconds in which either u or v was present.
+  /// Adds the covariance of a time `h` [s] during which the voltage was either u or v.
   void open(const States<D8>& x, const Inputs& u, const Inputs& v, double h, StateMatrix& covariance) {
     const auto a = played_.derivative_at(x, u), b = played_.derivative_at(x, v);
     Gain::State moved = Gain::State::Zero();
     for (std::size_t i = 0; i < states_; ++i) moved[static_cast<Eigen::Index>(i)] = h * (a[i].a - b[i].a);
     covariance += moved * moved.transpose();
   }
-  /// The voltage step occurs at any time between two samples; a uniform distribution has a variance of 1/12.
+  /// Adds the covariance of a voltage step at an unknown time between two samples. A uniform distribution of
+  /// this time has the variance step^2/12.
   void leap(const States<D8>& x, std::size_t k, Linear& l) {
     const Interval& i = record_.behind[k];
     open(x, i.before, i.after, record_.step / std::sqrt(12.0), l.unsure);
@@ -195,7 +197,7 @@ class Linearised {
   Played<D8> played_;
 };
 
-/// Variances of the compared outputs' own noise.
+/// Returns the variances of the noise of the compared outputs.
 Eigen::Matrix<double, kOutputs, 1> variances(const MeasurementNoise& noise, double Ifd) {
   Eigen::Matrix<double, kOutputs, 1> v;
   v << noise.phasor(), noise.phasor(), noise.speed(), noise.field(Ifd);
@@ -221,7 +223,7 @@ OutputMatrix covariance(const NoisyRecord& record, const Linear& l, const StateM
   const double input = record.noise.phasor() * record.noise.phasor();
   OutputMatrix S = l.C * P * l.C.transpose() + input * l.D * l.D.transpose();
   S.diagonal() += variances(record.noise, l.y[kIfd]);
-  if (record.outputs < kOutputs) {  // as if measured with infinite variance
+  if (record.outputs < kOutputs) {  // not recorded: as if measured with infinite variance
     S.row(kIfd).setZero();
     S.col(kIfd).setZero();
     S(kIfd, kIfd) = 1;
@@ -312,7 +314,8 @@ template <class T>
 void innovations(const Effect& machine, const NoisyRecord& r, const std::vector<Gain>& gains,
                  const std::vector<T>& p, const std::array<T, kSteady>& steady, T* out) {
   Played<T> m(machine, r.conventions, p, steady);
-  // The noise of a mean before the event is that of one sample divided by the root of their number.
+  // The noise of a mean before the event is that of one sample divided by the square root of the number of
+  // samples.
   const double mean = std::sqrt(r.before) / r.noise.phasor();
   *out++ = T(mean) * (T(r.P0) - steady[kP0]);
   *out++ = T(mean) * (T(r.Q0) - steady[kQ0]);

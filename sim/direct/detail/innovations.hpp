@@ -1,7 +1,8 @@
 #pragma once
 // Innovations of a Kalman filter on a noisy record. The noise of the played-in voltage acts immediately
-// through the stator equations, and later through the rotor states. The innovations contain both and are
-// white at the true parameters, so that the sum of their squares is the log-likelihood.
+// through the stator equations, and later through the rotor states. The innovations contain both effects and
+// are white at the true parameters. Minus half the sum of their squares is therefore the log-likelihood, up
+// to a constant.
 #include <Eigen/Core>
 #include <vector>
 
@@ -17,7 +18,7 @@ enum Steady { kP0, kQ0, kV0, kTheta0, kSteady };
 /// Filter gain of one sample.
 struct Gain {
   using State = Eigen::Matrix<double, kMostFlowing, 1>;
-  Eigen::Matrix<double, kMostFlowing, kOutputs> onto_states;  ///< of the step to the next sample
+  Eigen::Matrix<double, kMostFlowing, kOutputs> onto_states;  ///< onto the states at the next sample
   Eigen::Matrix<double, kOutputs, kOutputs> whitening;        ///< inverse Cholesky factor of the covariance
 };
 /// Result of the filter for given parameters and operating point.
@@ -25,15 +26,15 @@ struct Filtered {
   std::vector<Gain> gains;
   std::vector<Eigen::Matrix<double, kOutputs, 1>> white;  ///< whitened innovations
   /// The record without its most probable noise, and the machine's response to it. Sensitivities are computed
-  /// here. At the noisy voltage they would contain noise that the innovations contain as well, and a fit
-  /// would reduce both together.
+  /// with this record. With the noisy voltage they would be correlated with the innovations, and the fit
+  /// would be biased.
   NoisyRecord likely;
 };
 Filtered filter(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
                 const std::array<double, kSteady>& steady);
 
-/// Returns the number of outputs of innovations(): those of every sample, then those of the means before the
-/// event.
+/// Returns the number of outputs of innovations(): one for each mean before the event, then one for each
+/// compared signal of every sample.
 std::size_t innovation_count(const NoisyRecord& record);
 /// Computes innovation_count() whitened innovations `out`, of unit variance at the true p. T: double or D8.
 template <class T>

@@ -14,16 +14,16 @@ namespace swingbank::sim::direct {
 enum Output { kP, kQ, kSpeed, kIfd, kOutputs };
 /// Played-in signals, which are noisy too.
 enum Input { kV, kTheta, kInputs };
-/// Largest number of states: one dual holds the states and the input noise.
+/// Largest number of states. A dual number has derivatives with respect to the states and the input noise.
 constexpr std::size_t kMostFlowing = kSensitivities - kInputs;
 
 using Inputs = std::array<double, kInputs>;
 
 /// Played-in voltage between one sample and the next.
 struct Interval {
-  Inputs middle = {};              ///< by a cubic through four neighbours on the smooth side
-  bool leaps = false;              ///< whether there is a step at an unknown time in between
-  Inputs before = {}, after = {};  ///< in case of a step, taken in the middle: both sides, linear
+  Inputs middle = {};              ///< midpoint: cubic through four neighbours, or linear next to a step
+  bool leaps = false;              ///< whether the interval contains a step at an unknown time
+  Inputs before = {}, after = {};  ///< with a step: both sides, extrapolated to the midpoint
 };
 
 /// Correction of a machine's states where the played-in signals leave them undetermined [the states' units].
@@ -32,8 +32,8 @@ using Correction = std::array<double, kMostFlowing>;
 struct NoisyRecord {
   Conventions conventions;
   MeasurementNoise noise;
-  double step = 0;         ///< [s]
-  double first_step = 0;   ///< from the event's start to the first sample after it [s]
+  double step = 0;         ///< sampling interval [s]
+  double first_step = 0;   ///< time from the event's start to the next sample [s]
   int outputs = kOutputs;  ///< number of compared signals
   /// Means and number of the samples before the event. theta is relative to its mean.
   double P0 = 0, Q0 = 0, V0 = 0, Ifd0 = 0;
@@ -42,17 +42,18 @@ struct NoisyRecord {
   std::vector<Inputs> in;
   std::vector<std::array<double, kOutputs>> out;
   std::vector<Interval> behind;             ///< interval after each sample but the last
-  Inputs at_event = {}, end_of_first = {};  ///< of the step from the event, whose first is a straight line's
-  /// Added to the states at the first sample and after a step; zero in a record as measured.
+  Inputs at_event = {}, end_of_first = {};  ///< at the event, extrapolated; at the next sample
+  /// Corrections that are added to the states at the first sample and after a step. They are zero in a
+  /// measured record.
   Correction at_first = {};
   std::map<std::size_t, Correction> behind_leap;
 
   [[nodiscard]] std::size_t samples() const { return in.size(); }
 };
 
-/// Computes the played-in voltage between the samples of `in`, once `leaps` is set in each interval.
+/// Computes the played-in voltage between the samples of `in`. Requires `leaps` of every interval.
 void fill_intervals(NoisyRecord& record);
-/// Returns the record with a segment of at most `longest` [s] after the event.
+/// Returns the input of the likelihood, with at most `longest` [s] after the event.
 NoisyRecord noisy_record(const Recording& record, double longest);
 
 }  // namespace swingbank::sim::direct
