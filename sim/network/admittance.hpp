@@ -41,7 +41,7 @@ std::vector<int> grounded_buses(const Network& network, const Topology& topology
 
 /// Kron reduction of `dynamic_admittance` to the `kept` buses: I = Y V. All other buses carry no injection;
 /// grounded buses are eliminated with V = 0. Rows and columns of a kept bus that is grounded are zero, and
-/// `grounded` lists it. Throws InputError if buses without any connection remain.
+/// `grounded` lists it. Throws InputError if the matrix of the eliminated buses is singular.
 struct ReducedNetwork {
   Eigen::MatrixXcd y;         ///< kept x kept [pu on base_mva]
   std::vector<int> grounded;  ///< positions in `kept` with zero voltage

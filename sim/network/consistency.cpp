@@ -50,7 +50,7 @@ void settle_stars(Network& n, const std::set<int>& stars) {
     Complex others{}, own{};
     for (decltype(y)::InnerIterator e(y, star); e; ++e) {
       const Bus& other = at(n, static_cast<int>(e.row()));
-      // The star's column is accessible, its row is needed; they differ by the phase shifts.
+      // The iterator runs over the star's column, but its row is needed. They differ by the phase shifts.
       const Complex value = y.coeff(star, static_cast<int>(e.row()));
       (e.row() == star ? own : others) += e.row() == star ? value : value * std::polar(other.vm, other.va);
     }
@@ -124,7 +124,7 @@ struct FileBalance {
               const std::vector<Device>& devices) {
     std::vector<int> pool;
     const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
-    std::vector<BusType> kind(left.size(), BusType::load);  // by pool: its most controlled bus type
+    std::vector<BusType> kind(left.size(), BusType::load);  // per group of joined buses: its highest bus type
     for (std::size_t i = 0; i < left.size(); ++i) {
       BusType& most = kind[static_cast<std::size_t>(pool[i])];
       most = std::max(most, n.buses[i].type);
@@ -174,8 +174,8 @@ struct FileBalance {
     };
     return {size(1.0), size(0.0)};
   }
-  /// Returns 1 for each duplicate that the file's voltages confirm: least squares, rounded, then one at a
-  /// time.
+  /// Returns 1 for each duplicate that the file's voltages confirm. The start is a rounded least-squares
+  /// solution. Then each duplicate is decided in turn until none changes.
   [[nodiscard]] Eigen::VectorXd shown() const {
     Eigen::VectorXd kept = Eigen::VectorXd::Ones(drawn.cols());
     if (drawn.rows() > 0) kept = drawn.completeOrthogonalDecomposition().solve(-others);
@@ -384,7 +384,7 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
   }
   std::vector<int> pool;
   const std::vector<Complex> left = pooled(n, imbalance_of_file(n), pool);
-  std::map<int, int> sharing;  // number of device buses in each pool
+  std::map<int, int> sharing;  // number of device buses in each group of joined buses
   for (const auto& [b, names] : at_bus) ++sharing[pool[static_cast<std::size_t>(b)]];
   const std::map<int, double> schedule = schedules(devices);
   constexpr double most = 0.05;  // [pu], ten times the rounding error of a solved case with five digits
@@ -401,7 +401,7 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
     return;
   }
   for (const auto& [bus_of, names] : at_bus) {
-    const int b = bus_of;  // clang 14 captures no structured binding
+    const int b = bus_of;  // clang 14 cannot capture a structured binding
     const auto i = static_cast<std::size_t>(b);
     const Complex draws = -left[i] / static_cast<double>(sharing[pool[i]]);
     std::string id = "~";

@@ -15,19 +15,20 @@ void settle_isolated(Network& network);
 /// Isolates star points of three-winding transformers whose windings are all out of service. `stars`: bus
 /// indices.
 void isolate_idle_stars(Network& network, const std::set<int>& stars);
-/// Sets the voltages of star points from those of their windings, because files often keep the default value.
+/// Computes the voltages of star points from those at their windings, because files often contain only a
+/// default.
 void settle_stars(Network& network, const std::set<int>& stars);
 /// Equipment with an identity that the file has already used; it is kept under a new id.
 struct Duplicate {
   enum class Kind { load, shunt, generator, branch } kind;  ///< kind of equipment
   std::vector<int> buses;  ///< numbers of its buses; two or three for a branch
-  std::string id{};        ///< the new one
-  std::string text{};      ///< for remarks
+  std::string id{};        ///< new id
+  std::string text{};      ///< description in remarks
 };
 struct Device;
-/// Decides on duplicates and adds remarks. With `by_voltages` a duplicate is kept only if the file's voltages
-/// balance the powers at its buses better with it than without it. If they do not depend on it, it is kept.
-/// Buses of devices do not count.
+/// Keeps or removes each duplicate, and adds remarks. Without `by_voltages` all are kept. With it, a
+/// duplicate is removed if the file's voltages balance the powers at its buses better without it. Buses of
+/// devices are excluded from this balance.
 void settle_duplicates(Network& network, const std::vector<Duplicate>& duplicates, bool by_voltages,
                        const std::vector<Device>& devices);
 /// Resolves contradictions between generators in service, with a remark for each:
@@ -38,15 +39,15 @@ void settle_duplicates(Network& network, const std::vector<Duplicate>& duplicate
 /// - Reactive limits with q_min above q_max are removed.
 /// `where(i)`: place of generator i in the file.
 void settle_generators(Network& network, const std::function<std::string(std::size_t)>& where);
-/// Gives every island a slack bus, that of its largest generator by MVA. Takes islands without a generator
-/// out of service (type 4). Adds remarks.
+/// Gives every island without a slack bus one, at its largest generator by MVA. Takes islands without a
+/// generator out of service (type 4). Adds remarks.
 void settle_islands(Network& network);
 
 /// Equipment without a model in Swingbank: kind, name and buses.
 struct Device {
   std::string name, where;          ///< kind and name, as text; its place in the file
   std::vector<int> buses;           ///< bus indices
-  std::vector<double> scheduled{};  ///< scheduled consumption [pu] at each; NaN: unknown
+  std::vector<double> scheduled{};  ///< scheduled consumption [pu] at each bus; NaN: unknown
 };
 /// Replacement of equipment without a model.
 enum class DeviceReplacement {
@@ -58,8 +59,8 @@ enum class DeviceReplacement {
 /// Replaces devices by loads, with a remark. Errors are added to `problems`.
 void replace_devices(Network& network, const std::vector<Device>& devices, DeviceReplacement how,
                      Problems& problems);
-/// Adds a problem for each item with a number that is not finite, a quotient of extreme values. `file`: for
-/// messages.
+/// Adds a problem for each item with a value that is not finite, as a quotient of extreme numbers may be.
+/// `file`: name in messages.
 void check_finite(const Network& network, const std::string& file, Problems& problems);
 
 }  // namespace swingbank::sim::network

@@ -25,7 +25,7 @@ struct LineTrip {
 /// of which are lost; the others continue unchanged.
 struct GeneratorTrip {
   int generator;      ///< index into Network::generators
-  double time;        ///< [s]
+  double time;        ///< time of the trip [s]
   double part = 1.0;  ///< share of its units, > 0; 1: all
 };
 /// Consumption added at a bus (removed if negative): the constant admittance that draws `power` at the
@@ -33,14 +33,14 @@ struct GeneratorTrip {
 struct LoadStep {
   int bus;                      ///< index
   Complex power;                ///< P + jQ [pu on base_mva]
-  double t_on;                  ///< [s]
+  double t_on;                  ///< start [s]
   std::optional<double> t_off;  ///< end [s]; none: permanent
 };
 /// Step of a control's reference, added to earlier steps.
 struct SetpointStep {
   int generator;        ///< index into Network::generators
-  double time;          ///< [s]
-  double dVref, dPref;  ///< [pu]
+  double time;          ///< time of the step [s]
+  double dVref, dPref;  ///< changes of the references [pu]
 };
 /// All disturbances of one simulation; each list may be empty.
 struct Event {

@@ -33,14 +33,15 @@ struct SequenceSource {
   Complex admittance;  ///< at the bus [pu on base_mva]
 };
 /// Returns the negative-sequence driving-point impedance at a bus [pu on base_mva]. Lines, shunts and loads
-/// have their positive-sequence admittances; the opposite phase shift does not change the diagonal. Every
-/// machine has its subtransient impedance.
+/// have their positive-sequence admittances; the opposite sign of phase shifts does not change the diagonal
+/// of the impedance matrix. Every machine has its subtransient impedance.
 Complex negative_sequence_impedance(const Network& network, const PowerFlow& flow, const Topology& topology,
                                     const std::vector<SequenceSource>& sources, int bus);
 
-/// Replaces the event's single fault, whose z is zf, by the equivalent positive-sequence shunt. Switchings up
-/// to the start of the fault are included. Problems: more than one fault; a switching during the fault, which
-/// would change the negative sequence; z0 missing, or given for a fault that does not need it.
+/// Replaces the event's single fault, whose impedance z is zf, by the equivalent positive-sequence shunt.
+/// Switchings up to the start of the fault are included. Problems: more than one fault; a switching during
+/// the fault, which would change the negative sequence; z0 missing, or given for a fault that does not need
+/// it.
 void make_unbalanced(Event& event, FaultType type, std::optional<Complex> z0, const Network& network,
                      const PowerFlow& flow, const std::vector<SequenceSource>& sources, Problems& problems);
 

@@ -20,7 +20,7 @@ std::vector<Complex> voltages_of_file(const Network& network) {
   return v;
 }
 
-/// As imbalance_of_file(), at other voltages.
+/// Computes imbalance_of_file() at other voltages.
 std::vector<Complex> imbalance_at(const Network& network, const std::vector<Complex>& voltage, TiesIn ties) {
   const Eigen::Map<const Eigen::VectorXcd> v(voltage.data(), static_cast<Eigen::Index>(voltage.size()));
   const Eigen::VectorXcd s = v.cwiseProduct((bus_admittance(network, {}, ties) * v).conjugate());
@@ -43,8 +43,8 @@ std::vector<Complex> imbalance_of_file(const Network& network) {
 namespace {
 
 /// Voltages and the power mismatch of every bus. A file's voltages have too few digits for the current of a
-/// tie. Of the buses joined by ties one keeps the file's voltage, preferably one with a generator. The other
-/// voltages follow from it, and the ties carry their mismatch to it.
+/// tie. Among buses joined by ties, only one keeps the file's voltage, preferably a bus with a generator. The
+/// voltages of the others are computed from it, and their mismatches are moved to it.
 struct FileSolution {
   std::vector<Complex> voltage, left;
 };

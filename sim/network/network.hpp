@@ -49,7 +49,7 @@ struct Shunt {
 /// A shunt that is switched in steps to keep a voltage within a band.
 struct SwitchedShunt {
   int bus;                    ///< bus index
-  std::string id;             ///< of the shunt in Network::shunts
+  std::string id;             ///< id of the shunt in Network::shunts
   double present;             ///< present susceptance [pu]
   int regulated;              ///< index of the regulated bus
   double least, most;         ///< voltage band [pu]
@@ -63,7 +63,7 @@ struct Branch {
   double tap = 1.0, shift = 0.0;     ///< [-, rad]
   Complex shunt_from{}, shunt_to{};  ///< line shunts, magnetising admittance [pu]
   bool in_service = true;            ///< status in the file
-  bool transformer = false;          ///< section of the .raw; the equations are the same
+  bool transformer = false;          ///< listed as a transformer; the equations are the same
 };
 /// Generator or converter at a bus, as the power flow represents it.
 struct Generator {
@@ -77,9 +77,9 @@ struct Generator {
   double q_min = -99.99, q_max = 99.99;  ///< reactive limits [pu on base_mva]
   double rt = 0.0, xt = 0.0;             ///< step-up transformer between machine and bus [pu on mva]; 0: none
   int regulated = -1;                    ///< index of the regulated bus; -1: its own
-  double share = 100.0;  ///< of the reactive power of all generators that regulate this bus [%]
+  double share = 100.0;  ///< share of the reactive power of all generators that regulate this bus [%]
 };
-/// A change to a case beyond reading it, with every place of the change.
+/// A change to a case that goes beyond reading it, with every place of the change.
 struct Remark {
   std::string what;                 ///< change, as text
   std::vector<std::string> places;  ///< places of the change

@@ -68,8 +68,9 @@ void check_slack(const Network& n, const std::vector<double>& supply) {
 }
 
 /// Newton's method on angles, magnitudes and currents of ties. With a tie's current as an unknown, its
-/// equation is linear in the voltages, so that start voltages that differ across the tie are harmless. As a
-/// sum of powers, its mismatch would be the square of that difference divided by a small impedance.
+/// equation is linear in the voltages, so that start voltages that differ across the tie are harmless. If the
+/// tie's power were computed from the voltages, its mismatch would be the square of that difference divided
+/// by a small impedance.
 class Newton {
  public:
   Newton(const Network& n, const Demand& demand)
@@ -109,7 +110,8 @@ class Newton {
         v_[i] = std::polar(roles[as_index(i)].setpoint, std::arg(v_[i]));
   }
 
-  /// Iterates from the present voltages. Returns true if every mismatch is within tolerance or rounding.
+  /// Iterates from the present voltages. Returns true if every mismatch is within tolerance or rounding and
+  /// no voltage has collapsed.
   bool iterate(double tolerance, int limit, int& iterations, double longest_step = kAnyStep) {
     for (int k = 0; k <= limit; ++k, ++iterations) {
       if (!evaluate()) return false;
@@ -145,16 +147,16 @@ class Newton {
     int row;
     double factor;
   };
-  /// A solution at a fraction of the nominal voltage is no operating point: a bus without load has one at V =
-  /// 0.
+  /// Whether a voltage is far below nominal. Such a solution is not an operating point: without load, for
+  /// example, V = 0 satisfies the equations of a bus.
   [[nodiscard]] bool collapsed() const {
     constexpr double least = 0.2;  // [pu]
     for (Eigen::Index i = 0; i < v_.size(); ++i)
       if (role(static_cast<int>(i)).kind != Role::out && std::abs(v_[i]) < least) return true;
     return false;
   }
-  /// Returns the angle of every bus without power flow: that of its slack bus plus the phase shifts in
-  /// between [rad].
+  /// Returns the angle of every bus if no power flows: that of its slack bus plus the phase shifts in between
+  /// [rad].
   [[nodiscard]] std::vector<double> angles_of_shifts() const {
     std::vector<std::vector<std::pair<int, double>>> next(n_.buses.size());
     for (const Branch& b : n_.branches)
@@ -338,7 +340,8 @@ class Newton {
   int worst_bus_ = -1;
 };
 
-/// Solves with the present roles: from the present voltages, else the file's, else a flat start.
+/// Solves with the present roles. Starts from the present voltages (if `limited`), else from the file's, else
+/// from a flat start, and at last with shorter steps. Throws InputError if all starts fail.
 void solve(Newton& newton, const Network& network, const PowerFlowOptions& options, bool limited,
            int& iterations) {
   if (limited && newton.iterate(options.tolerance, options.limit, iterations)) return;
@@ -369,9 +372,9 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
                         ", or keep the file's voltages (--start file)"});
 }
 
-/// Shares the power of a bus among its generators, without limits. If the solution is that of the file, the
-/// shares are the file's: PSS/E shares by the previous values of a plant's units (its records of eight units
-/// at a bus: Q as P). Otherwise by MVA.
+/// Shares the power of a bus among its generators, without limits. If the power is nearly that of the file,
+/// each generator keeps its P and Q of the file, as in PSS/E, and the difference is shared by MVA. Otherwise
+/// the whole power is shared by MVA.
 void share_freely(const Network& n, const std::vector<std::size_t>& units, double mva, Complex power,
                   std::vector<Complex>& generation) {
   Complex rest = power;
@@ -404,7 +407,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
     return g.q_min <= g.q_max ? std::clamp(generation[k].imag(), g.q_min, g.q_max) : generation[k].imag();
   };
   std::vector<std::size_t> open = units;
-  while (true) {  // excess goes to units with reserve; at most as many rounds as units
+  while (true) {  // moves excess to units with reserve; at most as many rounds as units
     double rest = power.imag(), free_mva = 0.0;
     std::vector<std::size_t> free;
     for (const std::size_t k : units) {
@@ -419,7 +422,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
       }
     }
     if (free.size() == open.size() || free.empty()) {
-      if (free.empty())  // beyond the sum of limits: type-1 bus, or q_min above q_max
+      if (free.empty())  // the power exceeds the sum of the limits: type-1 bus, or q_min above q_max
         for (const std::size_t k : units) generation[k] += Complex(0.0, rest * n.generators[k].mva / mva);
       return;
     }

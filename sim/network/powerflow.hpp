@@ -14,19 +14,18 @@ struct SteppedShunt {
 };
 /// Solution of the power flow.
 struct PowerFlow {
-  std::vector<Complex> voltage;  ///< per bus [pu]
-  std::vector<Complex>
-      generation;         ///< per generator [pu on base_mva]; Q (and slack P) shared by MVA at a bus
-  int iterations = 0;     ///< number of Newton iterations
-  double mismatch = 0.0;  ///< largest power mismatch [pu]
+  std::vector<Complex> voltage;     ///< per bus [pu]
+  std::vector<Complex> generation;  ///< power of each generator [pu on base_mva]
+  int iterations = 0;               ///< number of Newton iterations
+  double mismatch = 0.0;            ///< largest power mismatch [pu]
   /// Buses whose generators are at a reactive limit and do not regulate their voltage.
   std::vector<int> at_limit = {};
   std::vector<SteppedShunt> stepped = {};  ///< switched shunts that were stepped
 };
 /// Options of the power flow.
 struct PowerFlowOptions {
-  double tolerance = 1e-12;     ///< [pu]
-  int limit = 30;               ///< Newton iterations
+  double tolerance = 1e-12;     ///< largest accepted mismatch [pu]
+  int limit = 30;               ///< largest number of Newton iterations
   bool reactive_limits = true;  ///< apply the generators' reactive limits
   bool step_shunts = false;     ///< step switched shunts until the regulated voltages lie in their bands
 };
@@ -36,7 +35,8 @@ struct PowerFlowOptions {
 /// - A bus whose reactive power would be outside q_min to q_max delivers the limit. It regulates again once
 ///   the voltage allows it. Slack buses and buses with q_min above q_max have no limits.
 /// - In every island at least one slack bus sets the angle and balances the power.
-/// - Switched shunts step one step at a time, all at once; one that reverses its direction stops.
+/// - Between solutions, every switched shunt outside its band moves by one step. A shunt that would reverse
+///   its direction stops.
 /// - A bus of type 2 without a generator in service is a load bus.
 /// - At a bus of type 1 generators deliver P and Q.
 /// - If Newton's method fails from the file's voltages, it is repeated from a flat start.

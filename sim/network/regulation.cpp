@@ -69,7 +69,7 @@ void Regulation::assign() {
       role.kind = s->bus == leader ? Role::leads : Role::follows;
     }
   }
-  double most = 0.0;  // shares of order 1 keep the equations' scale
+  double most = 0.0;  // shares of at most 1, so that all equations have similar magnitudes
   for (const Role& role : roles_) most = std::max(most, role.share);
   for (Role& role : roles_) role.share /= most;
 }
@@ -77,7 +77,7 @@ void Regulation::assign() {
 bool Regulation::limit(const std::function<double(int)>& reactive,
                        const std::function<double(int)>& voltage) {
   constexpr double beyond = 1e-9;  // [pu], ignores rounding
-  constexpr int most = 3;          // returns from a limit; afterwards the bus stays at its limit
+  constexpr int most = 3;          // largest number of returns; afterwards the bus stays at its limit
   bool moved = false;
   for (Source& s : sources_) {
     if (!s.bounded) continue;

@@ -6,12 +6,12 @@
 namespace swingbank::sim::network {
 namespace {
 
-constexpr double kSameStep = 1e-9;  ///< [pu], steps are rounded sums
+constexpr double kSameStep = 1e-9;  ///< tolerance [pu], because steps are rounded sums
 
 /// Returns -1 for too much susceptance, +1 for too little, 0 within the band.
 int way_to_band(const SwitchedShunt& s, double v) { return v > s.most ? -1 : v < s.least ? 1 : 0; }
 
-/// Returns the next step in a direction, or the present one at the end.
+/// Returns the next susceptance in a direction [pu], or `now` if there is none.
 double next_step(const SwitchedShunt& s, double now, int direction) {
   if (direction > 0) {
     const auto found = std::ranges::upper_bound(s.steps, now + kSameStep);

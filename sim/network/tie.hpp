@@ -12,12 +12,12 @@ namespace swingbank::sim::network {
 /// pu at 10 pu current) is below the resolution of files and records. Such a branch gets j kLeastImpedance.
 constexpr double kLeastImpedance = 1e-6;
 /// Largest impedance of a tie [pu on base_mva]; compare PSS/E's THRSHZ. A tie's current is computed from its
-/// voltage difference or is an unknown of its own. A sum with its admittance would lose the digits of the
-/// bus's other branches: the resulting voltages would be wrong by 1e-16 / |R + jX| pu.
+/// voltage difference or is an unknown of its own. If its admittance were added to those of the bus's other
+/// branches, their digits would be lost: the resulting voltages would be wrong by 1e-16 / |R + jX| pu.
 constexpr double kTieImpedance = 1e-4;
 
-/// Replaces an impedance up to kLeastImpedance by j kLeastImpedance, with a remark. `place`: of the branch in
-/// its file.
+/// Replaces an impedance up to kLeastImpedance by j kLeastImpedance, with a remark. `place`: the branch's
+/// place in its file.
 void raise_impedance(Network& network, double& r, double& x, const std::string& place);
 
 /// A tie in service: V_from / ratio - V_to = z I. I flows into bus `to`, I / conj(ratio) out of bus `from`.

@@ -15,8 +15,8 @@ struct Role {
     slack,      ///< angle and magnitude are given
     regulated,  ///< magnitude is given, regulated by its own generators
     load,       ///< P and Q are given
-    leads,      ///< Q is an unknown that keeps the magnitude of `target`, another bus
-    follows     ///< Q is in proportion to that of `leader`, by the shares
+    leads,      ///< Q is unknown; it sets the magnitude at another bus, `target`
+    follows     ///< Q is proportional to that of bus `leader`, by their shares
   };
   Kind kind = load;
   Complex generation{};   ///< P, and Q where it is given, of its generators [pu]
@@ -33,8 +33,8 @@ class Regulation {
   [[nodiscard]] const Roles& roles() const { return roles_; }
   /// Returns per bus the MVA of the generators in service.
   [[nodiscard]] const std::vector<double>& supply() const { return supply_; }
-  /// Moves buses to their limits or back to regulation, by the reactive power of a bus's generators and the
-  /// voltages [pu]. Returns false if nothing changed.
+  /// Moves buses to a reactive limit, or from a limit back to regulation. `reactive`: reactive power of a
+  /// bus's generators [pu]; `voltage`: magnitude at a bus [pu]. Returns false if nothing changed.
   bool limit(const std::function<double(int)>& reactive, const std::function<double(int)>& voltage);
   /// Returns the buses that are at a limit.
   [[nodiscard]] std::vector<int> at_limit() const;
