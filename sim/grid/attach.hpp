@@ -12,7 +12,7 @@ namespace swingbank::sim::grid {
 void attach(Grid& grid, const plant::Attachment& attachment, const std::string& where, Problems& problems);
 
 /// Adds the effect described by "PLANT:EFFECT[:PARAM=VALUE,...]" to a plant ("all": to every plant), in any
-/// slot except machine and load. Combines read_attachment(), with the effects of Grid::library, and attach().
+/// slot except machine and load. The text is read by read_attachment() with the effects of Grid::library.
 void attach(Grid& grid, const std::string& text, const std::string& where, Problems& problems);
 
 }  // namespace swingbank::sim::grid

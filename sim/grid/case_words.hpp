@@ -1,5 +1,5 @@
 #pragma once
-// Words of a case's options in configs and on the command line, in the order of their enumerators.
+// Names of a case's options in configs and on the command line, in the order of their enumerators.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace swingbank::sim::grid {
 
-/// Of Lacking.
+/// Names of the enumerators of Lacking.
 inline const std::vector<std::string> kLackingWords = {"no", "zero", "standard"};
-/// Of network::DeviceReplacement.
+/// Names of the enumerators of network::DeviceReplacement.
 inline const std::vector<std::string> kDeviceWords = {"checked", "file", "none"};
-/// Of formats::Repeated.
+/// Names of the enumerators of formats::Repeated.
 inline const std::vector<std::string> kRepeatedWords = {"refuse", "keep", "voltages"};
 
-/// Returns the enumerator whose word a config has at `key`; `otherwise` if the key is missing or its word is
-/// unknown, which is recorded as a problem.
+/// Returns the enumerator whose name the config has at `key`, or `otherwise` if the key is missing or the
+/// name is unknown. An unknown name is recorded as a problem.
 template <class Enum>
 Enum choose(Config& config, const std::string& key, const std::vector<std::string>& words, Enum otherwise,
             const Range& about) {

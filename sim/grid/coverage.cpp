@@ -10,7 +10,7 @@
 namespace swingbank::sim::grid {
 namespace {
 
-/// Missing models by the prefix of their names, with the reason.
+/// Prefix of the names of missing models, and the reason.
 struct Missing {
   std::string_view beginning, why;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// An event as text, part by part: the options of `swingbank simulate` and the keys of a system file.
+// Reader of an event given as text: the options of `swingbank simulate`, or the keys of a system file.
 #include <functional>
 #include <string>
 #include <vector>
@@ -19,11 +19,11 @@ struct EventTexts {
 };
 /// Parts of an event, used to name options or keys in messages.
 enum class EventPart { fault, trip, generator_trip, load_step, vref_step, pref_step, fault_type, z0 };
-/// Returns the place of a text for messages: "--fault 5:1:1.1".
+/// Returns the place of a text for messages, such as "--fault 5:1:1.1".
 using EventPlace = std::function<std::string(EventPart part, const std::string& text)>;
 
-/// Reads every part. Errors become problems, among them a reference step that no control follows and any time
-/// after `t_end` [s].
+/// Reads every part. Errors become problems. Among them are a reference step that no control follows, and any
+/// time after `t_end` [s].
 network::Event read_event(const EventTexts& texts, const Grid& grid, double t_end, const EventPlace& place,
                           Problems& problems);
 

@@ -10,14 +10,15 @@
 namespace swingbank::sim::grid {
 namespace {
 
-/// Compares a circuit id of the network, a text, with a control's parameter, a number.
+/// Whether a circuit id of the network (text) equals a control's parameter (number).
 bool is_circuit(const std::string& name, int number) {
   int value = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), value);
   return error == std::errc() && end == name.data() + name.size() && value == number;
 }
 
-/// Returns the branch in service between two buses with this circuit, or the only one; -1: none.
+/// Returns the branch in service between two buses with this circuit. Without a match it returns the only
+/// branch between them, else -1.
 int branch_between(const network::Network& n, int from, int to, int circuit) {
   int only = -1, count = 0;
   for (std::size_t i = 0; i < n.branches.size(); ++i) {
@@ -30,7 +31,7 @@ int branch_between(const network::Network& n, int from, int to, int circuit) {
   return count == 1 ? only : -1;
 }
 
-/// Returns the remote place that a control of `plant` names.
+/// Returns the bus and branch that a control of `plant` measures.
 plant::FarPlace place_of(const network::Network& network, const plant::Plant& plant,
                          const plant::Block& block, std::vector<NotThere>& missing) {
   plant::FarPlace place;

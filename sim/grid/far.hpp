@@ -1,5 +1,5 @@
 #pragma once
-// Remote measurements of plants' controls: located in the network and evaluated from its power flow.
+// Remote measurements of plants' controls: their location in the network, and their values in its power flow.
 #include <string>
 #include <vector>
 
@@ -7,13 +7,13 @@
 
 namespace swingbank::sim::grid {
 
-/// A bus or branch that a control names and that is not in service in the network.
+/// A bus or branch that a control refers to but that is not in service in the network.
 struct NotThere {
   std::string control;  ///< its effect
   std::string what;     ///< "bus 999"
 };
-/// Locates the bus and the branch that the controls of a plant name (Plant::far_place) and evaluates the
-/// measurements there. Where one is missing the control measures at its plant. Returns the missing ones.
+/// Locates the bus and the branch that the controls of a plant measure (Plant::far_place), and evaluates the
+/// measurements. If one is missing, the control measures at its plant instead. Returns the missing ones.
 std::vector<NotThere> look_far(const Grid& grid, plant::Plant& plant);
 /// The same for every plant; each missing bus or branch becomes a remark.
 void look_far(Grid& grid);

@@ -99,7 +99,7 @@ class GridMaker {
         refuse(p, given.line);
     }
   }
-  /// Collects records with the same fault into one problem.
+  /// Collects records with the same error into one problem.
   void refuse(const Problem& p, int line) {
     const auto same = std::ranges::find_if(
         alike_, [&](const Alike& a) { return a.first.what == p.what && a.first.why == p.why; });
@@ -238,7 +238,7 @@ class GridMaker {
     }
     if (!any) grid_.network.remark("models of loads out of service are ignored", what + " (" + where + ")");
   }
-  /// Adds a model of a switched shunt; a record without an id applies to the first one at its bus.
+  /// Adds a model of a switched shunt. A record without an id applies to the first switched shunt of its bus.
   void add_shunt_model(const Effect& effect, formats::DyrRecord record, const std::string& where,
                        Problems& problems) {
     const std::string what = record.model + " at bus " + std::to_string(record.bus);
@@ -301,8 +301,8 @@ class GridMaker {
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(generator)];
     return "'" + g.id + "' at bus " + std::to_string(bus_number(g));
   }
-  /// Returns a hint if the .dyr seems truncated: within a record, or before the last generators of the
-  /// network.
+  /// Returns a hint if the .dyr seems truncated, either within a record or before those of the network's last
+  /// generators.
   [[nodiscard]] std::string cut_off_text() const {
     if (cut_off_at_ > 0)
       return fmt::format("; no '/' ends the last record, on line {}: the file may be truncated", cut_off_at_);
@@ -446,7 +446,7 @@ class GridMaker {
   std::vector<ShuntModel> shunt_models_;
   struct Alike {
     Problem first;
-    std::vector<int> lines;  ///< lines of the others
+    std::vector<int> lines;  ///< lines of the other records
   };
   std::vector<Alike> alike_;                                 ///< records that their model does not accept
   std::map<std::pair<std::string, bool>, Unknown> unknown_;  ///< key: name, and true for a user-written model

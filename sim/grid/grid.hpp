@@ -41,21 +41,23 @@ struct CaseOptions {
 };
 
 /// Combines a network with its dynamic models. Throws InputError that names every generator in service
-/// without a model, every unknown model, wrong column count and inconsistent value, with the .dyr line.
+/// without a model. It also names every unknown model, wrong column count and inconsistent value, with its
+/// line in the .dyr.
 ///
 /// Records of generators that are out of service are dropped; those of generators that the network does not
 /// have are dropped with a remark. The frequency is the network's: conventions.frequency is overwritten.
 /// Parameters that an effect keeps in the .raw (ZR, ZX) are taken from there. If the .dyr has its own source
 /// reactance and ZX contradicts it, the .dyr takes precedence, as in PSS/E, with a remark. Equipment without
-/// a model draws constant P and Q. A solution that differs from the file's voltages by more than 1e-3 pu
-/// causes a remark.
+/// a model draws constant P and Q. If the solution differs from the file's voltages by more than 1e-3 pu, a
+/// remark is added.
 Grid make_grid(network::Network network, const std::vector<formats::DyrRecord>& dynamics,
                const std::string& dyr_name, Conventions conventions, const CaseOptions& options = {});
 /// Combines read_network, read_dyr and make_grid, and warns of every change to the case. A .dyd is read by
-/// survey_dyd; its mva, Ra and X'd take precedence over those of the network's generators.
+/// survey_dyd; its machine base, Ra and X'd take precedence over those of the network's generators.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const CaseOptions& options);
-/// The same with options of the .dyr only. `frequency_hz`: system frequency [Hz] for a network without one.
+/// The same with options of the .dyr only. `frequency_hz`: system frequency [Hz] if the network's file has
+/// none.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const formats::DyrOptions& options = {}, std::optional<double> frequency_hz = {});
 

@@ -13,9 +13,9 @@ namespace swingbank::sim::grid {
 struct ModelCount {
   std::string name, kind;  ///< kind: its slot, "" if the model is unknown
   int records = 0, units = 0, first_line = 0;
-  ///< number of records; of their units; line of the first record
+  ///< number of records; number of their units; line of the first record
   int faulty = 0;     ///< faulty records of a known model
-  std::string fault;  ///< error of the first of these
+  std::string fault;  ///< error of the first faulty record
   /// Returns the number of unusable records.
   [[nodiscard]] int uncovered() const { return kind.empty() ? records : faulty; }
 };
@@ -27,7 +27,7 @@ struct UnitCount {
   double mva = 0;                      ///< machine base [MVA]
   bool in_service = true;              ///< status in the case
   std::vector<std::string> models;     ///< names in the .dyr
-  std::vector<std::string> uncovered;  ///< unusable ones among them
+  std::vector<std::string> uncovered;  ///< names of those that are unusable
   bool machine = false;                ///< true if one of the models is a usable machine
   bool classical = false;              ///< true if that machine has no field winding: GENCLS
   int field_records = 0;               ///< number of controls that act through the field voltage
@@ -39,12 +39,12 @@ struct UnitCount {
 struct Inventory {
   std::vector<UnitCount> units;     ///< in the order of the .raw
   std::vector<ModelCount> models;   ///< most records first
-  int without_generator = 0;        ///< records of known controls whose generator is missing in the .raw
+  int without_generator = 0;        ///< number of records of known controls without a generator in the .raw
   int first_without_generator = 0;  ///< line of the first of these
-  std::vector<std::string> raw_faults = {}, dyr_faults = {};  ///< sentences
+  std::vector<std::string> raw_faults = {}, dyr_faults = {};  ///< messages about the files
 };
 
-/// Takes the inventory of a case. Throws InputError if one of the files cannot be read at all.
+/// Takes the inventory of a case. Throws InputError if one of the files cannot be read.
 Inventory take_inventory(const std::filesystem::path& raw, const std::filesystem::path& dyr,
                          const formats::RawOptions& options = {});
 

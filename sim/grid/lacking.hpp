@@ -1,5 +1,5 @@
 #pragma once
-// Values used for those missing at the end of a .dyr record.
+// Replacement of values that are missing at the end of a .dyr record.
 
 namespace swingbank::sim::grid {
 

@@ -24,7 +24,7 @@ std::vector<Problem> hindrances(const Grid& grid, const plant::Plant& plant) {
 
 struct Limit {
   std::size_t block, parameter;  ///< index of the control and of its parameter
-  int way;                       ///< +1: it widens upwards; -1: downwards
+  int way;                       ///< +1: upper limit; -1: lower limit
   double given;
 };
 
@@ -36,7 +36,8 @@ class Widener {
         if (const int way = plant.controls[b].effect->parameters[i].limit; way != 0)
           limits_.push_back({b, i, way, plant.controls[b].p[i]});
   }
-  /// Widens the limits. Returns the reasons other than limits, in which case the plant is unchanged.
+  /// Widens the limits. If the operating point is infeasible for other reasons, returns these and leaves the
+  /// plant unchanged.
   std::vector<Problem> widen() {
     for (const Limit& l : limits_) value(l) = l.given + l.way * kAllOpen;
     std::vector<Problem> left = hindrances(grid_, plant_);

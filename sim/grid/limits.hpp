@@ -1,5 +1,6 @@
 #pragma once
-// Operating points beyond a control's limits: all reported at once, or the limits widened, as in PSS/E.
+// Treatment of operating points beyond a control's limits: reports all of them at once, or widens the limits
+// as PSS/E does.
 #include "sim/grid/grid.hpp"
 
 namespace swingbank::sim::grid {

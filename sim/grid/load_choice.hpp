@@ -15,14 +15,14 @@ void loads_as_composed(Grid& grid, Problems& problems);
 /// Returns true for the frequency-dependent load of PSS/E. Its fractions of constant power and current (Pp,
 /// Pi, Qp, Qi) come from the .raw if its .dyr record has none.
 bool is_composed(const Effect& effect);
-/// Sets these fractions from the load's components in the .raw. A load whose components cancel to P = 0 or
-/// Q = 0 is a problem.
+/// Sets the fractions Pp, Pi, Qp and Qi from the load's components in the .raw. A load whose components
+/// cancel to P = 0 or Q = 0 is a problem.
 void compose(const Grid& grid, int load, plant::Block& block, const std::string& where, Problems& problems);
 
 /// Assigns a load model from "BUS[/ID]:EFFECT[:PARAM=VALUE,...]". Without ID it applies to every load at the
-/// bus, with * as BUS to every load that has no model yet and a non-zero consumption. Unnamed parameters have
-/// the effect's default; the effects are those of Grid::library. A model that the load already has is
-/// replaced. `where` names the option or config line.
+/// bus. BUS = * selects every load with a non-zero consumption and no model yet. Unnamed parameters have the
+/// effect's default; the effects are those of Grid::library. A model that the load already has is replaced.
+/// `where` names the option or config line.
 void choose_load(Grid& grid, const std::string& text, const std::string& where, Problems& problems);
 
 /// Assigns a model to one load of the network and replaces the previous one. Errors of the effect's check()

@@ -177,8 +177,8 @@ class UnitReader {
     for (const std::string& text : idle_controls(unit_.plant))
       unit_.notes.push_back(text + ": it has no effect");
   }
-  /// Adds a note if the model cannot hold the operating point of the .raw, because records probably start
-  /// there.
+  /// Adds a note if the operating point of the .raw is infeasible for the model. Measured records probably
+  /// start there.
   void note_infeasible_dispatch() {
     const network::Bus& bus = bus_at(generator().bus);
     if (!generator().in_service || !(bus.vm > 0)) return;
@@ -189,7 +189,7 @@ class UnitReader {
       (void)plant::operating_point(plant, std::polar(bus.vm, bus.va), net().base_mva,
                                    Conventions::psse(net().frequency));
     } catch (const InputError& error) {
-      const Problem& p = error.problems().front();  // the others are consequences
+      const Problem& p = error.problems().front();  // the other problems follow from it
       unit_.notes.push_back(fmt::format("at P, Q and V of {}: {} ({}): a record that starts there is refused",
                                         net().origin, p.what, p.why));
     }
@@ -262,7 +262,7 @@ class UnitReader {
     std::string warning = place(unit_.plant, std::move(block), {g, net().origin}, where, problems_);
     if (!warning.empty()) unit_.notes.push_back(std::move(warning));
   }
-  /// Returns the generator, with the machine data of a .dyd in place of those of the .raw.
+  /// Returns the generator. Machine data of a .dyd replace those of the .raw.
   network::Generator generator_with(int line) {
     network::Generator g = generator();
     if (const auto note = dyd_.notes.find(line); note != dyd_.notes.end())
@@ -323,7 +323,7 @@ class UnitReader {
   void read_transformer(int measured_at) {
     if (measured_at == unit_.bus) return;
     const int far = net().bus_index(measured_at);
-    StepUp first;  // between the machine and its bus
+    StepUp first;  // the unit's own transformer, between the machine and its bus
     if (unit_.plant.transformer.effect) {
       plant::Block& own = unit_.plant.transformer;
       first.z = Complex(at(own, "R"), at(own, "X")) * (net().base_mva / unit_.plant.mva);

@@ -22,7 +22,7 @@ struct UnitChoice {
   std::optional<double> frequency_hz = {};  ///< system frequency if the network's file has none [Hz]
   int raw_version = 0;                      ///< version of a .raw without REV; 0: not given
   /// Models of the unit to drop or to read as others. A replacement with the same number of parameters keeps
-  /// the values; any other has its defaults.
+  /// the values; any other has its own defaults.
   formats::DyrOptions models = {};
   std::optional<int> measured_at = {};  ///< measured bus beyond the unit's transformer
   /// Treatment of records that are too short (fill values) or too long (surplus values are dropped).
@@ -44,24 +44,24 @@ struct Unit {
   int bus = 0;                                  ///< number of the measured bus
   std::string id, bus_name;                     ///< id of the unit; name of its bus
   double frequency = 60.0, system_mva = 100.0;  ///< [Hz], [MVA]
-  std::optional<Dispatch> dispatch = {};        ///< none if out of service or without a voltage in the case
-  double kv = 0.0;                              ///< nominal voltage of the measured bus [kV]; 0: not given
-  std::vector<std::string> defaults;            ///< names of effects that have default values
-  std::vector<std::string> notes;               ///< sentences on interpreted and on dropped data
+  std::optional<Dispatch> dispatch = {};  ///< none if the unit is out of service or its bus has no voltage
+  double kv = 0.0;                        ///< nominal voltage of the measured bus [kV]; 0: not given
+  std::vector<std::string> defaults;      ///< names of effects that have default values
+  std::vector<std::string> notes;         ///< messages about interpreted and dropped data
 };
 
-/// Reads one unit. Throws InputError with the errors of this unit's records only: unknown bus or unit,
-/// unknown models, wrong column counts, inconsistent values, each with its line.
+/// Reads one unit. Throws InputError with the errors of this unit only, each with its line: unknown bus or
+/// unit, unknown models, wrong column counts, inconsistent values.
 Unit read_unit(const UnitChoice& choice);
 
 /// Returns the .dyr records of the plant's machine and controls. A user-defined model or a value without a
-/// column becomes a problem. Values that belong in the .raw appear as comments. Instruments and setpoint
-/// moves belong to a measured record and are omitted.
+/// column becomes a problem. Values that belong in the .raw appear as comments. Instruments and changes of
+/// set-points belong to an event's record and are omitted.
 std::string unit_dyr(const plant::Plant& plant, int bus, const std::string& id, const std::string& where,
                      Problems& problems);
 
-/// Returns the same as lines of a PSLF .dyd, with values on the machine's base. A model without a counterpart
-/// in formats::dyd_models_text becomes a problem too.
+/// Returns the records as lines of a PSLF .dyd, with values on the machine's base. A model without a
+/// counterpart in formats::dyd_models_text becomes a problem too.
 std::string unit_dyd(const plant::Plant& plant, int bus, const std::string& id,
                      const formats::DydPlace& place, const std::string& where, Problems& problems);
 

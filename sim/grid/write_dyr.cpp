@@ -13,8 +13,8 @@
 namespace swingbank::sim::grid {
 namespace {
 
-/// Returns one record of a .dyr. `owner`: "generator 30" or "load 8", `id`: its id in the .raw; `raw`: block
-/// with the values of the .raw.
+/// Returns one record of a .dyr. `owner`: "generator 30" or "load 8"; `id`: id of the owner in the .raw;
+/// `raw`: block with the values of the .raw.
 std::string dyr_record(const plant::Block& block, const std::string& owner, int bus, const std::string& id,
                        const std::string& file, Problems& problems, const plant::Block* raw = nullptr) {
   const Effect& effect = *block.effect;
@@ -95,8 +95,8 @@ void write_transformer(const Grid& grid, const plant::Plant& plant, const std::s
                "set the generator's RT and XT in the network, or remove it before writing");
 }
 
-/// Returns true for instruments and setpoint moves, which belong to the record of an event and not to a
-/// plant's model. A load controller is a setpoint effect with a .dyr form, and belongs to the model.
+/// Returns true for instruments and changes of set-points, which belong to an event and not to a plant's
+/// model. A setpoint effect with a .dyr form, such as a load controller, belongs to the model.
 bool belongs_to_event(const Effect& effect) {
   return effect.slot == Slot::measurement || (effect.slot == Slot::setpoint && effect.dyr_name.empty());
 }

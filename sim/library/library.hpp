@@ -11,20 +11,21 @@
 
 namespace swingbank::sim::library {
 
-/// Every compiled effect, in the order of the file names. Generated: sim/effects/*.hpp.
+/// Returns every compiled effect, in the order of the file names. CMake generates the list from
+/// sim/effects/*.hpp.
 std::span<const Effect> compiled_effects();
 
 /// The compiled effects and those added to this object. A copy shares the effects of its original at the time
 /// of copying; later additions to one do not appear in the other. An added effect lives as long as the last
-/// library that holds it. A holder of a `const Effect*` must therefore also hold a copy of the library, or
-/// must not outlive its owner.
+/// library that contains it. Code that stores a `const Effect*` must therefore also store a copy of the
+/// library, or must not outlive the library's owner.
 class EffectLibrary {
  public:
   /// Returns the effect of that name, case-insensitive, or nullptr.
   [[nodiscard]] const Effect* find(std::string_view name) const;
   /// Returns the compiled effects, then the added ones in the order of their addition.
   [[nodiscard]] std::vector<const Effect*> all() const;
-  /// Returns the names of all effects (of one slot) for error messages: "GENCLS, GENROU".
+  /// Returns the names of all effects for error messages: "GENCLS, GENROU".
   [[nodiscard]] std::string names() const;
   /// The same for the effects of one slot.
   [[nodiscard]] std::string names(Slot slot) const;

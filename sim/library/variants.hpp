@@ -1,7 +1,7 @@
 #pragma once
 // Variants: effects that differ from another one by details that a record hardly shows. A header declares a
-// variant with `variant_of`, the name of the other; the search for a missing effect then tries only the
-// other.
+// variant with `variant_of`, the name of the other effect. The search for a missing effect then tries only
+// the other effect.
 #include "sim/core/effect.hpp"
 
 namespace swingbank::sim::library {

@@ -25,8 +25,8 @@ const Effect* effect_named(std::string_view model) {
       return &e;
   return nullptr;
 }
-/// Alias of a model with the same equations. `order`: position of each column in the alias; empty: same
-/// order.
+/// Alias of a model with the same equations. `order`: position of each of the effect's columns in the alias;
+/// empty: same order.
 struct OtherName {
   std::string_view name, known_as;
   std::span<const int> order = {};
@@ -34,9 +34,9 @@ struct OtherName {
 constexpr int kPslfsSt5b[] = {0, 6, 7, 8, 9, 1, 4, 5, 2, 3, 14, 15, 16, 17, 10, 11, 12, 13};
 constexpr OtherName kOtherNames[] = {
     {"REECD", "REECD1"},
-    {"REPCTA1", "REPCA1"},           // for a wind plant of type 3
-    {"IEE2ST", "ST2CUT"},            // its IEEE form: the same blocks (OpenIPSL, c80a6c4)
-    {"ESST5B", "ST5B", kPslfsSt5b},  // PSLF's (InterPSS, St5bExciterTest)
+    {"REPCTA1", "REPCA1"},           // variant for wind plants of type 3
+    {"IEE2ST", "ST2CUT"},            // IEEE form with the same blocks (OpenIPSL, c80a6c4)
+    {"ESST5B", "ST5B", kPslfsSt5b},  // order of PSLF (InterPSS, St5bExciterTest)
     {"EXDC1", "IEEEX1"},             // GridPACK's and PSLF's name for type DC1 of 1981
 };
 
@@ -197,7 +197,7 @@ int number_in(const plant::Block& block, int parameter) {
   if (parameter < 0) return 0;
   const auto at = static_cast<std::size_t>(parameter);
   const double value = block.p[at];
-  // Any other value is no bus number; check() refuses it.
+  // Any other value is not a bus number; check() refuses it.
   return value > 0.0 && value <= block.effect->parameters[at].high ? static_cast<int>(value) : 0;
 }
 

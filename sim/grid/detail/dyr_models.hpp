@@ -12,16 +12,17 @@
 
 namespace swingbank::sim::grid {
 
-/// Scope of a load model of a .dyr. If several apply to a load, the first in this order takes precedence.
+/// Scope of a load model of a .dyr. If several models apply to a load, the first in this order takes
+/// precedence.
 enum class Reach { load, owner, zone, area, all };
 
 /// Returns the effect of a record, or nullptr, and the loads that it applies to. Aliases are resolved: IEELAR
 /// is IEELBL for an area.
 std::pair<const Effect*, Reach> effect_of_dyr(const formats::DyrRecord& record);
 /// Resolves extended bus names of records (name and base voltage, 'UNIT        20.000') to bus numbers. A
-/// name that is missing or ambiguous in the network remains.
+/// name that is missing or ambiguous in the network stays in the record.
 void find_named_buses(std::vector<formats::DyrRecord>& records, const network::Network& network);
-/// Returns the reason why a record of an unknown model is refused, for messages.
+/// Returns the reason for messages that refuse an unknown model. `dyr`: name of the file.
 std::string lacking_text(const std::string& dyr);
 /// Returns the names of the machines that have a .dyr form, for messages.
 std::string machine_names();
@@ -40,7 +41,7 @@ inline constexpr std::string_view kAnyShunt = "*";
 int number_in(const plant::Block& block, int parameter);
 /// Returns the number of the bus whose voltage a model regulates; 0: its own bus, or none.
 int regulated_bus(const plant::Block& block);
-/// Returns the index of that bus, or -1. A bus that the network does not have is a problem.
+/// Returns the index of the regulated bus, or -1. A bus that the network does not have is a problem.
 int regulated_index(const network::Network& network, const plant::Block& block, const std::string& where,
                     Problems& problems);
 /// Result of completing a record that is shorter or longer than its model requires.
@@ -69,20 +70,20 @@ struct RawGenerator {
 plant::Block transformer_of(const network::Generator& g);
 /// Sets the parameters that PSS/E keeps in the .raw from ZR and ZX.
 void take_from_raw(plant::Block& block, const network::Generator& g);
-/// Checks the block and inserts it into its slot; an occupied slot is a problem. A source reactance of the
-/// .dyr that contradicts ZX takes precedence; the warning on it is returned, or "".
+/// Checks the block and inserts it into its slot; an occupied slot is a problem. If the source reactance of
+/// the .dyr differs from ZX, it takes precedence and a warning is returned; else "".
 std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
                   Problems& problems);
 /// Sorts the plant's controls by slot, the order of their evaluation.
 void sort_controls(plant::Plant& plant);
-/// Returns a warning on features that a block's values request and its equations omit, or "".
+/// Returns a warning about features that the block's values request and the model lacks, or "".
 std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant);
-/// Returns true if the machine's derivatives depend on Efd, found by evaluation; false for a classical
-/// machine.
+/// Returns true if the machine's derivatives depend on Efd, which is determined by evaluating them. It is
+/// false for a classical machine.
 bool reads_field_voltage(const Effect& machine);
 /// Returns true if a control in this slot acts only through the field voltage.
 bool acts_on_field(Slot slot);
-/// Returns one sentence per control of the field voltage at a machine whose equations do not depend on it.
+/// Returns one sentence per control that acts on the field voltage, if the machine does not depend on it.
 std::vector<std::string> idle_controls(const plant::Plant& plant);
 /// Adds a problem for every control that is incompatible with the plant's source.
 void check_fit(const plant::Plant& plant, const std::string& where, Problems& problems);

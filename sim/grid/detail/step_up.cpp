@@ -9,7 +9,7 @@
 namespace swingbank::sim::grid {
 namespace {
 
-constexpr double kSameRatio = 1e-6;  ///< the circulating current is then below 1e-5 pu at X = 0.1 pu
+constexpr double kSameRatio = 1e-6;  ///< limits the circulating current to 1e-5 pu at X = 0.1 pu
 
 /// Returns the buses of the shortest path from `machine` to `far`; empty if there is none.
 std::vector<int> way_of_buses(const network::Network& n, int machine, int far) {
