@@ -1,7 +1,7 @@
 #pragma once
 // Batch integrator with independent SIMD lanes. The method is Dormand-Prince 5(4). Each lane of a pack
-// integrates its own event with its own time, step size and step acceptance, and takes the next job from the
-// queue. Lanes share no arithmetic, so each result is bitwise independent of its lane and batch.
+// integrates its own event, with its own time, step size and step acceptance. A finished lane takes the next
+// job from the queue. Lanes share no arithmetic, so each result is bitwise independent of its lane and batch.
 #include <functional>
 #include <memory>
 #include <string>
@@ -27,12 +27,12 @@ struct BatchOptions {
   bool sensitivities = false;      ///< compute derivatives with respect to Job::seeds, in kDualLanes lanes
 };
 
-/// A sensitivity parameter. Sensitivities are computed per `scale`, not per unit of the parameter, so that
-/// the step size control applies one tolerance to value and sensitivity.
+/// A sensitivity parameter. The derivative is taken with respect to the parameter divided by `scale`. The
+/// step size control can then apply one tolerance to value and sensitivity.
 struct Seed {
   int plant;                     ///< index of the plant in the grid
   plant::ParameterId parameter;  ///< parameter of the machine, the transformer or a control
-  double scale;                  ///< change that counts as 1 [unit of the parameter]
+  double scale;                  ///< reference change of the parameter [its unit]
 };
 
 /// One simulation: its event and the plants' parameters. Unlisted plants have the parameters of the grid.
@@ -59,8 +59,8 @@ std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& jo
 /// Integrates jobs on one grid in SIMD lanes. One Batch runs in one thread.
 class Batch {
  public:
-  /// Throws InputError if the number of lanes is not available, if a load model regulates a bus other than
-  /// its own, or if sources or user-defined models of the grid cannot run in the requested single precision.
+  /// Throws InputError if the number of lanes is not available, or if a load model regulates a bus other than
+  /// its own. In single precision it also refuses effects that need double precision.
   Batch(const grid::Grid& grid, BatchOptions options);
   ~Batch();
   /// Runs jobs until `next` returns false. Calls `done` once per job, in the order of completion; the

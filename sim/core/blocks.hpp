@@ -67,7 +67,7 @@ struct Quadratic {
 };
 
 /// DC voltage of a three-phase bridge rectifier [pu]: V FEX(I/V) with source voltage V behind the commutating
-/// reactance and load I = KC Ifd. FEX as in IEEE Std 421.5, annex D, multiplied by V so that there is no
+/// reactance and load I = KC Ifd. FEX is that of IEEE Std 421.5, annex D. Its product with V avoids a
 /// division.
 template <class T>
 inline T rectified(const T& V, const T& I) {

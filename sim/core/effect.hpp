@@ -6,7 +6,7 @@
 //   parameters[], states[]        one record each; the only declaration of a parameter
 //   defaults_from, bounds_from   sources of defaults and bounds where a parameter's record gives none
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
-//   check(), unphysical()         singular values (always refused), orderings (refused in physical draws)
+//   check(), unphysical()         singular values (always refused), violated orderings (refused in draws)
 //   prepare<T>()                  computes coefficients from parameters, so that the loop has no division
 //   equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
@@ -76,7 +76,7 @@ constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot 
 constexpr bool is_of_converter(Slot slot) {
   return slot >= Slot::plant_control && slot <= Slot::electrical_control;
 }
-/// Whether a plant may have several effects in this slot: those whose outputs add.
+/// Whether a plant may have several effects in this slot, because their outputs add.
 constexpr bool is_shared(Slot slot) {
   return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
 }
@@ -100,8 +100,8 @@ constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
 constexpr Source kAsEffect = {};
 
 /// One parameter of an effect. `low` and `high` bound the usual range (sim/plant/usual.hpp); check() refuses
-/// values that no equation can take. A dataset's sampling box must lie within the range. `null_value` is the
-/// null value, at which the effect's influence vanishes; it may lie outside the usual range (NaN: none). The
+/// values with which the equations cannot be evaluated. A dataset's sampling box must lie within the range.
+/// At `null_value` the effect has no influence; this value may lie outside the usual range (NaN: none). The
 /// unit "code" marks an integer choice, which is neither sampled nor fitted. Empty sources default to
 /// defaults_from and bounds_from.
 struct Parameter {
@@ -168,9 +168,9 @@ struct Conventions {
   static constexpr Conventions andes(double hz = 60.0) { return {false, false, hz}; }
 };
 
-/// Remote measurement of a plant control: voltage of the regulated bus [pu], current [pu] and power [pu] of
-/// the selected branch, positive out of the plant. If the parameters select no bus or branch, the values are
-/// those of the plant's grid side, where the plant's records are measured.
+/// Remote measurement of a plant control: voltage of the regulated bus, and current and power of the selected
+/// branch [pu], positive out of the plant. If the parameters select no bus or branch, the values are those of
+/// the plant's grid side, where the plant's records are measured.
 template <class T>
 struct Far {
   T Vr{}, Vi{}, Ir{}, Ii{}, P{}, Q{};
@@ -329,10 +329,10 @@ struct Effect {
   /// Layout of the .dyr records of a load that belong to switched shunts, else nullptr.
   const ShuntRecord* at_shunt = nullptr;
   Elsewhere elsewhere = {};  ///< parameters that select a remote measuring point
-  /// Adds singular parameter values, which no equation can take, to `problems`. `where`: prefix of the
-  /// messages.
+  /// Adds a problem for each singular parameter value, with which the equations cannot be evaluated. `where`:
+  /// place in the messages.
   void (*check)(const void* user_model, const double* p, const std::string& where, Problems& problems);
-  std::string_view (*unphysical)(const double* p);  ///< empty, or the violated ordering
+  std::string_view (*unphysical)(const double* p);  ///< returns the violated ordering, or empty
   /// Returns a warning about values that request unmodelled behaviour, empty if there are none; nullptr: no
   /// such check.
   std::string (*remark)(const double* p) = nullptr;

@@ -25,7 +25,7 @@ struct Work {
   [[nodiscard]] constexpr bool published() const { return !title.empty(); }
 };
 
-/// Returns the source as text, "CIM: ExcSEXS"; without the work's id only the place.
+/// Returns the source as text, such as "CIM: ExcSEXS", or only the place if the work has no id.
 inline std::string as_text(const Source& source) {
   const std::string place(source.place);
   return source.work->id.empty() ? place : std::string(source.work->id) + ": " + place;

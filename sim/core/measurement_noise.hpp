@@ -1,10 +1,11 @@
 #pragma once
 // White measurement noise of a machine's record, set by one level L (0.001: 0.1 %).
 //   P, Q, V [pu of the machine], theta [rad]   L
-//   Ifd, Efd                                   L of the value: errors of shunts and transducers are relative
-//   speed [pu]                                 L/20: a toothed wheel is timed, not sampled; 3 mHz at 0.1 %
-// Phasor instruments are rated by total vector error: an error of L across the phasor is L in magnitude and
-// L rad in angle. IEEE C37.118.1 allows 1 %; good instruments have 0.1 % to 0.5 %.
+//   Ifd, Efd                                   L times the value (relative errors of shunts, transducers)
+//   speed [pu]                                 L/20, because a toothed wheel is timed; 3 mHz at L = 0.1 %
+// Phasor instruments are rated by total vector error. An error vector of relative length L changes the
+// magnitude by at most L and the angle by at most L rad. IEEE C37.118.1 allows 1 %; good instruments have
+// 0.1 to 0.5 %.
 // Frequency is the filtered derivative of the angle, so its noise is that of theta after the same filter.
 #include <cmath>
 

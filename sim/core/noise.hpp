@@ -1,7 +1,7 @@
 #pragma once
 // Random numbers of the measurement chain, as pure functions of seed, stream and sample. A sample's noise
-// therefore depends neither on the length of the record nor on the order of the calls. Philox4x32-10 (J.
-// Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC'11).
+// therefore depends neither on the length of the record nor on the order of the calls. The generator is
+// Philox4x32-10 (J. Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC'11).
 #include <Random123/philox.h>
 
 #include <array>
@@ -30,7 +30,7 @@ inline std::array<double, 2> normal_pair(std::uint64_t seed, std::uint32_t strea
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Returns the derived seed of part number `part`.
+/// Returns the seed of part number `part`, derived from `seed`.
 inline std::uint64_t seed_of(std::uint64_t seed, std::uint64_t part) {
   const auto r =
       r123::Philox4x32()({{static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(part >> 32), 0, 1}},

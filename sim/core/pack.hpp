@@ -1,7 +1,7 @@
 #pragma once
 // Packed<S, N>: N independent scenarios in one value (a SIMD batch). Up to a register's size it is one vector
-// of the compiler's vector extension; above that it is two halves. GCC passes vectors that are wider than a
-// register through memory. Halves avoid this on every processor.
+// of the compiler's vector extension; a wider value consists of two halves. GCC would pass a vector wider
+// than a register through memory. Halves avoid this on every processor.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -39,8 +39,8 @@ class SampledCurve {
   }
 
  private:
-  /// Whether there is a step between samples k and k + 1: a change more than `kFarMore` times as large as the
-  /// changes before and after it.
+  /// Whether there is a step between samples k and k + 1. A step is a change more than `kFarMore` times as
+  /// large as the changes before and after it.
   [[nodiscard]] bool is_step(std::ptrdiff_t k) const {
     constexpr double kFarMore = 8.0;
     const double rise = std::norm(at(k + 1) - at(k));

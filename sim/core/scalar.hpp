@@ -18,7 +18,8 @@ using P8 = Pack<8>;                       ///< eight doubles
 constexpr int kDualLanes = kRegisterBytes == 64 ? 8 : 4;
 using DualPack = Dual<Pack<kDualLanes>, kSensitivities>;  ///< SIMD batch with sensitivities
 
-/// Every scalar type that an effect is instantiated for. New types are added only here.
+/// Scalar types for which all equations of an effect are instantiated. New types are added only here.
+/// FloatPack is separate (float_ops.hpp).
 using Scalars = std::tuple<double, P4, P8, D8, DualPack>;
 
 /// Computes sine and cosine of a [rad].

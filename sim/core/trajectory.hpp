@@ -36,7 +36,7 @@ struct CacheAligned {
 };
 
 /// Samples at t = k/rate, k = 0..samples-1. At a switching time the sample is the value just before it,
-/// unless the options request the value after it.
+/// unless the integrator's options request the value after it.
 struct Trajectory {
   double rate = 0.0;              ///< [1/s]
   int samples = 0;                ///< number of samples of each row

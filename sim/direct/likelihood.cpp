@@ -130,8 +130,8 @@ double improve(Posterior& posterior, VectorXd& z, std::span<const ParameterPrior
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
                     std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
   constexpr double kSameCost = 0.02;  // change of the cost between two linearisations
-  // A search is stopped as trapped in a corner of the box if its reduced chi-square is above kLost and the
-  // relative change of its cost is below kCreeps.
+  // A search stops if its reduced chi-square exceeds kLost and its cost decreases by less than the fraction
+  // kCreeps. It is then trapped in a corner of the box.
   constexpr double kLost = 1.15, kCreeps = 0.005;
   Posterior posterior(machine, record, start, free);
   VectorXd z = posterior.start();

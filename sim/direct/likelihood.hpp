@@ -1,8 +1,8 @@
 #pragma once
 // Maximum a posteriori estimates of a machine's parameters from a record with known noise level, and their
 // Cramer-Rao bound. Terminal voltage and angle are played in. P, Q, speed and field current are compared with
-// the complete machine model, from the steady state before the event to the end of the record
-// (detail/innovations).
+// the complete machine model (detail/innovations). The comparison begins with the steady state before the
+// event.
 #include <span>
 #include <vector>
 

@@ -166,8 +166,8 @@ class Residuals : public ceres::CostFunction {
   VectorXd scale_;
 };
 
-/// Returns the RMS residual that true parameters may have [pu]: the integration error of a single-precision
-/// record, or three standard deviations of P before the event if these are larger.
+/// Returns the RMS residual [pu] up to which a fit counts as exact. It is the larger of the integration error
+/// of a single-precision record and three standard deviations of P before the event.
 double exact(const Recording& record) {
   constexpr double kIntegration = 1e-5, kOfNoise = 3;  // [pu]; standard deviations
   const std::size_t n = std::max<std::size_t>(2, before_first_leap(record));

@@ -6,8 +6,8 @@
 namespace swingbank::sim::grid {
 
 /// Checks that every plant can hold its operating point. Throws one InputError that lists all infeasible
-/// plants. `widen`: if only limits of the plant's controls prevent the operating point, they are moved no
-/// further than required, each with a remark and a warning.
+/// plants. `widen`: widens the limits of the plant's controls if they alone prevent the operating point. Each
+/// is moved no further than required, with a remark and a warning.
 void settle_limits(Grid& grid, bool widen);
 
 }  // namespace swingbank::sim::grid

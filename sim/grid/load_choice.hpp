@@ -12,8 +12,8 @@ namespace swingbank::sim::grid {
 /// admittances need no model. A load whose components cancel to P = 0 or Q = 0 is a problem.
 void loads_as_composed(Grid& grid, Problems& problems);
 
-/// Returns true for the frequency-dependent load of PSS/E. Its fractions of constant power and current (Pp,
-/// Pi, Qp, Qi) come from the .raw if its .dyr record has none.
+/// Returns true for the frequency-dependent load of PSS/E (LDFRBL). Its fractions of constant power and
+/// current (Pp, Pi, Qp, Qi) come from the .raw, because its .dyr record has no columns for them.
 bool is_composed(const Effect& effect);
 /// Sets the fractions Pp, Pi, Qp and Qi from the load's components in the .raw. A load whose components
 /// cancel to P = 0 or Q = 0 is a problem.
@@ -29,7 +29,7 @@ void choose_load(Grid& grid, const std::string& text, const std::string& where, 
 /// and a load with zero consumption are problems.
 void set_load(Grid& grid, int load, plant::Block block, const std::string& where, Problems& problems);
 
-/// Returns the load models as text for a run's output: "constant impedance, except ZIP at 4, 8/2".
+/// Returns the load models as text for a run's output: "ZIP at 4, 8/2; the others constant impedance".
 std::string describe_loads(const Grid& grid);
 
 }  // namespace swingbank::sim::grid

@@ -1,6 +1,6 @@
 #pragma once
-// One unit of a case: reads the records of one generator, independent of errors elsewhere in the case, and
-// writes a unit as .dyr or .dyd records.
+// One unit of a case: reader of the records of one generator, and writer of .dyr and .dyd records. Errors
+// elsewhere in the case do not affect the reader.
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -41,7 +41,7 @@ struct Dispatch {
 /// A unit without a network: `bus` and `generator` of its plant are -1.
 struct Unit {
   plant::Plant plant;                           ///< plant with its parameters
-  int bus = 0;                                  ///< number of the measured bus
+  int bus = 0;                                  ///< number of the unit's bus
   std::string id, bus_name;                     ///< id of the unit; name of its bus
   double frequency = 60.0, system_mva = 100.0;  ///< [Hz], [MVA]
   std::optional<Dispatch> dispatch = {};  ///< none if the unit is out of service or its bus has no voltage

@@ -26,9 +26,9 @@ Eigen::SparseMatrix<Complex> bus_admittance(const Network& network, const Topolo
 /// Returns the power of a load at the power-flow voltage [pu on base_mva].
 Complex consumption(const Load& load, const PowerFlow& flow);
 
-/// Returns the bus admittance matrix [pu] for dynamics: every load and load step is the constant admittance
-/// that draws its power at the power-flow voltage, and faults through an impedance are added. Bolted faults
-/// are not in the matrix: see `grounded_buses`. `without`: sorted indices of loads that are left out. Throws
+/// Returns the bus admittance matrix [pu] for dynamics. Every load and load step is the constant admittance
+/// that draws its power at the power-flow voltage. The matrix contains faults through an impedance, but not
+/// bolted faults (see `grounded_buses`). `without`: sorted indices of loads that are left out. Throws
 /// InputError if no generator is connected, or if an island has no generator although nothing was tripped.
 Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const PowerFlow& flow,
                                                 const Topology& topology,

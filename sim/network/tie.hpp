@@ -13,7 +13,7 @@ namespace swingbank::sim::network {
 constexpr double kLeastImpedance = 1e-6;
 /// Largest impedance of a tie [pu on base_mva]; compare PSS/E's THRSHZ. A tie's current is computed from its
 /// voltage difference or is an unknown of its own. If its admittance were added to those of the bus's other
-/// branches, their digits would be lost: the resulting voltages would be wrong by 1e-16 / |R + jX| pu.
+/// branches, their digits would be lost. The resulting voltages would be wrong by 1e-16 / |R + jX| pu.
 constexpr double kTieImpedance = 1e-4;
 
 /// Replaces an impedance up to kLeastImpedance by j kLeastImpedance, with a remark. `place`: the branch's

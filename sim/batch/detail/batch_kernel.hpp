@@ -59,7 +59,7 @@ class BatchKernel {
   struct Watch {
     int first, count;              ///< states of the exciter
     Flat start{}, last{};          ///< Vs at the start of the step and at the last stage
-    Flat rested{}, rested_next{};  ///< 1 if the last stage kept Vs: of the previous step; of this step
+    Flat rested{}, rested_next{};  ///< 1 if the last stage left Vs unchanged: previous step, this step
     Flat same{};                   ///< number of stages with Vs unchanged from the previous stage
   };
 
@@ -213,7 +213,7 @@ class BatchKernel {
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;   ///< scratch of one evaluation
   std::vector<T> ir_, ii_;       ///< scratch, if shares_
-  Signals<T> signals_;           ///< scratch of all plants; one per plant would zero 25 packs
+  Signals<T> signals_;           ///< scratch shared by all plants, because a new one would zero 25 packs
   std::vector<T> algebra_;       ///< scratch of newton_step
   std::vector<T> steady_;        ///< currents of the linear sources at the nonlinear ones
   T time_{}, start_{};           ///< time of the evaluation, start of the step [s]

@@ -111,8 +111,8 @@ struct LaneTraits<Dual<Pack<N>, D>> {
     r.a = v;
     return r;
   }
-  /// Returns the largest magnitude of the value and its derivatives. Derivatives are per Seed::scale, so that
-  /// one tolerance applies to all.
+  /// Returns the largest magnitude of the value and its derivatives. Derivatives are scaled by Seed::scale,
+  /// so that one tolerance applies to all.
   static Flat magnitude(const T& v) {
     Flat m = Of::magnitude(v.a);
     for (const auto& d : v.d) {

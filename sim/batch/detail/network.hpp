@@ -33,8 +33,8 @@ void BatchKernel<T>::share() {
 }
 
 /// Returns the matrix of the unswitched grid. Its size is quadratic and its cost cubic in the number of
-/// sources. It is therefore computed only if there are no sparse factors, or for a switching without an
-/// update by SwitchedNetwork, such as the trip of a generator.
+/// sources. It is therefore computed only in two cases: without sparse factors, or for a switching that
+/// SwitchedNetwork cannot represent, such as the trip of a generator.
 template <class T>
 const InternalMatrix& BatchKernel<T>::own_matrix() {
   if (!own_matrix_) own_matrix_ = own_->network.matrix({}, own_r_, own_x_);

@@ -176,7 +176,7 @@ class Linearised {
     l.D += 0.5 * l.C * l.G;
     l.G = (0.5 * (l.F * l.G + l.G)).eval();
   }
-  /// Adds the covariance of a time `h` [s] during which the voltage was either u or v.
+  /// Adds the covariance of the state if it is unknown whether the voltage was u or v during `h` [s].
   void open(const States<D8>& x, const Inputs& u, const Inputs& v, double h, StateMatrix& covariance) {
     const auto a = played_.derivative_at(x, u), b = played_.derivative_at(x, v);
     Gain::State moved = Gain::State::Zero();

@@ -12,7 +12,7 @@
 
 namespace swingbank::sim::direct {
 
-/// Operating point before the event, estimated because means of noisy samples are inexact.
+/// Operating point before the event. It is estimated, because means of noisy samples are inexact.
 enum Steady { kP0, kQ0, kV0, kTheta0, kSteady };
 
 /// Filter gain of one sample.
