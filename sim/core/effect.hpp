@@ -134,7 +134,7 @@ struct Elsewhere {
   int from = -1, to = -1, circuit = -1;  ///< branch whose flow is measured at bus `from`
 };
 
-/// One state variable of an effect, with its limits and its weight in step control.
+/// One state variable of an effect, with its limits and its weight in step size control.
 struct State {
   std::string_view name, unit, meaning;  ///< identifier, unit and definition
   /// Weight of the state's error in step size control. The weight of a speed converts its error into an angle

@@ -369,8 +369,8 @@ class UnitReader {
           block.effect->name, bus != 0 && bus != recorded ? bus : from));
     }
   }
-  /// Adds problems for other equipment at the machine's bus, whose current also flows through the
-  /// transformer.
+  /// Adds a problem for another generator at the machine's bus, and notes for loads and shunts there. Their
+  /// current also flows through the transformer.
   void neighbours(int measured_at) {
     const int bus = generator().bus;
     for (std::size_t i = 0; i < net().generators.size(); ++i) {
@@ -393,7 +393,8 @@ class UnitReader {
                         "model has none",
                         s.id, unit_.bus, measured_at));
   }
-  /// Adds problems for equipment between the transformers, whose current adds to the unit's.
+  /// Adds problems for other equipment between the transformers, and for parallel transformers of different
+  /// ratios.
   void passed(const StepUp& way, int measured_at) {
     for (std::size_t k = 1; k + 1 < way.buses.size(); ++k)
       if (const std::string other = joins_on_the_way(net(), way, way.buses[k]); !other.empty())

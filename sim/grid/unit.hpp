@@ -16,9 +16,9 @@ namespace swingbank::sim::grid {
 
 /// Selects a unit of a case and the treatment of its records.
 struct UnitChoice {
-  std::filesystem::path raw, dyr;           ///< files of the network and of the dynamic records
-  int bus = 0;                              ///< bus number
-  std::string id = {};                      ///< may be empty if the bus has one unit in service
+  std::filesystem::path raw, dyr;  ///< files of the network and of the dynamic records
+  int bus = 0;                     ///< bus number
+  std::string id = {};             ///< id of the unit; may be empty if the bus has one unit in service
   std::optional<double> frequency_hz = {};  ///< system frequency if the network's file has none [Hz]
   int raw_version = 0;                      ///< version of a .raw without REV; 0: not given
   /// Models of the unit to drop or to read as others. A replacement with the same number of parameters keeps

@@ -115,7 +115,7 @@ void erase_equipment(Network& n, const Of& of) {
 }
 
 /// Power balance at the file's voltages as a linear function of the kept duplicates: P and Q at load buses, P
-/// at generator buses. Buses of devices do not count; buses joined by ties count as one.
+/// at generator buses. Buses with devices are excluded; buses joined by ties count as one.
 struct FileBalance {
   Eigen::MatrixXd drawn;   ///< a column for each duplicate: its power [pu]
   Eigen::VectorXd others;  ///< imbalance without the duplicates [pu]

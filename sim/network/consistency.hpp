@@ -27,7 +27,7 @@ struct Duplicate {
 };
 struct Device;
 /// Keeps or removes each duplicate, and adds remarks. Without `by_voltages` all are kept. With it, a
-/// duplicate is removed if the file's voltages balance the powers at its buses better without it. Buses of
+/// duplicate is removed if the file's voltages balance the powers at its buses better without it. Buses with
 /// devices are excluded from this balance.
 void settle_duplicates(Network& network, const std::vector<Duplicate>& duplicates, bool by_voltages,
                        const std::vector<Device>& devices);

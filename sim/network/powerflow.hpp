@@ -6,7 +6,7 @@
 
 namespace swingbank::sim::network {
 
-/// Result of a switched shunt that was stepped.
+/// Result of a switched shunt that was stepped or whose voltage is outside its band.
 struct SteppedShunt {
   std::size_t which;    ///< index into Network::switched
   double susceptance;   ///< [pu]
@@ -20,7 +20,7 @@ struct PowerFlow {
   double mismatch = 0.0;            ///< largest power mismatch [pu]
   /// Buses whose generators are at a reactive limit and do not regulate their voltage.
   std::vector<int> at_limit = {};
-  std::vector<SteppedShunt> stepped = {};  ///< switched shunts that were stepped
+  std::vector<SteppedShunt> stepped = {};  ///< switched shunts that were stepped or missed their band
 };
 /// Options of the power flow.
 struct PowerFlowOptions {

@@ -12,9 +12,9 @@
 
 namespace swingbank::sim::batch {
 
-/// Connection status per source.
+/// Connection status of each source.
 struct Terminals {
-  std::vector<char> grounded;     ///< 1 if the bus has a bolted fault (V = 0)
+  std::vector<char> grounded;     ///< 1 if V = 0 at the bus (bolted fault, or no generator in its island)
   std::vector<char> tripped;      ///< 1 if the source is disconnected
   std::vector<double> connected;  ///< connected fraction of its units, 0 to 1
 };

@@ -15,7 +15,7 @@ struct LaneTraits;
 
 template <>
 struct LaneTraits<double> {
-  using Flat = double;
+  using Flat = double;  ///< value of all lanes, without derivatives
   using Real = double;  ///< type of one lane
   static constexpr int lanes = 1, sensitivities = 0;
   static double get(double v, int) { return v; }

@@ -19,7 +19,7 @@ struct Role {
     follows     ///< Q is proportional to that of bus `leader`, by their shares
   };
   Kind kind = load;
-  Complex generation{};   ///< P, and Q where it is given, of its generators [pu]
+  Complex generation{};   ///< power of its generators: P, and Q if it is given [pu]
   double setpoint = 0.0;  ///< regulated magnitude [pu]
   double share = 1.0;
   int target = -1, leader = -1;
