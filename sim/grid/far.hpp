@@ -9,7 +9,7 @@ namespace swingbank::sim::grid {
 
 /// A bus or branch that a control refers to but that is not in service in the network.
 struct NotThere {
-  std::string control;  ///< its effect
+  std::string control;  ///< name of its effect
   std::string what;     ///< "bus 999"
 };
 /// Locates the bus and the branch that the controls of a plant measure (Plant::far_place), and evaluates the

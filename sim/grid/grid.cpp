@@ -301,8 +301,8 @@ class GridMaker {
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(generator)];
     return "'" + g.id + "' at bus " + std::to_string(bus_number(g));
   }
-  /// Returns a hint if the .dyr seems truncated, either within a record or before those of the network's last
-  /// generators.
+  /// Returns a hint if the .dyr seems truncated, either within a record or before the records of the
+  /// network's last generators.
   [[nodiscard]] std::string cut_off_text() const {
     if (cut_off_at_ > 0)
       return fmt::format("; no '/' ends the last record, on line {}: the file may be truncated", cut_off_at_);

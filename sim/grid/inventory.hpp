@@ -14,7 +14,7 @@ struct ModelCount {
   std::string name, kind;  ///< kind: its slot, "" if the model is unknown
   int records = 0, units = 0, first_line = 0;
   ///< number of records; number of their units; line of the first record
-  int faulty = 0;     ///< faulty records of a known model
+  int faulty = 0;     ///< number of faulty records of a known model
   std::string fault;  ///< error of the first faulty record
   /// Returns the number of unusable records.
   [[nodiscard]] int uncovered() const { return kind.empty() ? records : faulty; }
@@ -40,7 +40,7 @@ struct Inventory {
   std::vector<UnitCount> units;     ///< in the order of the .raw
   std::vector<ModelCount> models;   ///< most records first
   int without_generator = 0;        ///< number of records of known controls without a generator in the .raw
-  int first_without_generator = 0;  ///< line of the first of these
+  int first_without_generator = 0;  ///< line of the first such record
   std::vector<std::string> raw_faults = {}, dyr_faults = {};  ///< messages about the files
 };
 

@@ -11,13 +11,13 @@ namespace swingbank::sim::network {
 /// Three-phase fault at a bus from t_on to t_off [s] through the impedance z [pu on base_mva]; z = 0 is
 /// bolted (V = 0).
 struct BusFault {
-  int bus;             ///< index
+  int bus;             ///< bus index
   double t_on, t_off;  ///< start and end [s]
   Complex z{};         ///< fault impedance [pu on base_mva]
 };
 /// A branch that opens at t_open [s] and, if t_close is given, closes again at t_close.
 struct LineTrip {
-  int branch;                     ///< index
+  int branch;                     ///< branch index
   double t_open;                  ///< time of opening [s]
   std::optional<double> t_close;  ///< time of reclosing [s]; none: the branch stays open
 };
@@ -31,7 +31,7 @@ struct GeneratorTrip {
 /// Consumption added at a bus (removed if negative): the constant admittance that draws `power` at the
 /// voltage before the event.
 struct LoadStep {
-  int bus;                      ///< index
+  int bus;                      ///< bus index
   Complex power;                ///< P + jQ [pu on base_mva]
   double t_on;                  ///< start [s]
   std::optional<double> t_off;  ///< end [s]; none: permanent
@@ -57,7 +57,8 @@ struct Topology {
   std::vector<int> open = {};                            ///< branch indices, sorted
   std::vector<int> tripped = {};                         ///< generator indices, sorted
   std::vector<std::pair<int, Complex>> load_steps = {};  ///< bus index, power [pu]; sorted by bus
-  /// Generators that have lost a part, with the part still connected; sorted, disjoint from `tripped`.
+  /// Generators that have lost a part of their units, and the share still connected; sorted, disjoint from
+  /// `tripped`.
   std::vector<std::pair<int, double>> partly_tripped = {};
   /// Compares all members.
   friend bool operator==(const Topology&, const Topology&) = default;
@@ -73,7 +74,7 @@ struct Setpoint {
 };
 /// Interval between two switching times, in which the network is constant.
 struct Segment {
-  double start;                          ///< [s]; the first starts at 0
+  double start;                          ///< start [s]; 0 for the first segment
   Topology topology;                     ///< state of the network
   std::vector<Setpoint> setpoints = {};  ///< reference changes in force
 };

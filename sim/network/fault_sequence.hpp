@@ -28,9 +28,9 @@ Complex fault_impedance(FaultType type, Complex z2, Complex z0, Complex zf);
 
 /// A machine in the negative-sequence network.
 struct SequenceSource {
-  int bus;             ///< index
+  int bus;             ///< bus index
   int generator;       ///< index into Network::generators
-  Complex admittance;  ///< at the bus [pu on base_mva]
+  Complex admittance;  ///< admittance between bus and source [pu on base_mva]
 };
 /// Returns the negative-sequence driving-point impedance at a bus [pu on base_mva]. Lines, shunts and loads
 /// have their positive-sequence admittances; the opposite sign of phase shifts does not change the diagonal

@@ -47,11 +47,11 @@ NoisyRecord noisy_record(const Recording& record, double longest) {
   n.noise = record.noise;
   n.step = record.step;
   n.outputs = record.Ifd.empty() ? kOutputs - 1 : kOutputs;
-  // An event without a recorded time is assumed midway between two samples.
+  // An event without a recorded time is assumed to lie midway between two samples.
   const double event_position =
       record.event > 0 ? record.event / record.step : static_cast<double>(before_first_leap(record)) - 0.5;
   const std::size_t size = record.V.size();
-  // A sample at the event's time may show either side; it counts on neither.
+  // A sample at the event's time may have the value before or after the step; it is left out.
   constexpr double kWithinSample = 1e-6;  // [samples]
   const auto count = std::min(static_cast<std::size_t>(std::ceil(event_position - kWithinSample)), size);
   const auto first = std::min(static_cast<std::size_t>(event_position + kWithinSample) + 1, size);

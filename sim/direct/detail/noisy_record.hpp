@@ -26,7 +26,8 @@ struct Interval {
   Inputs before = {}, after = {};  ///< with a step: both sides, extrapolated to the midpoint
 };
 
-/// Correction of a machine's states where the played-in signals leave them undetermined [the states' units].
+/// Correction of the machine's states at times when the played-in signals do not determine them [units of the
+/// states].
 using Correction = std::array<double, kMostFlowing>;
 
 struct NoisyRecord {
@@ -42,7 +43,7 @@ struct NoisyRecord {
   std::vector<Inputs> in;
   std::vector<std::array<double, kOutputs>> out;
   std::vector<Interval> behind;             ///< interval after each sample but the last
-  Inputs at_event = {}, end_of_first = {};  ///< at the event, extrapolated; at the next sample
+  Inputs at_event = {}, end_of_first = {};  ///< inputs at the event, extrapolated; inputs at the next sample
   /// Corrections that are added to the states at the first sample and after a step. They are zero in a
   /// measured record.
   Correction at_first = {};
