@@ -33,7 +33,7 @@ struct PowerFlowOptions {
 /// - A generator regulates the voltage of its bus, or of `regulated`.
 /// - Generators that regulate one remote bus share their reactive power by `share`.
 /// - A bus whose reactive power would be outside q_min to q_max delivers the limit. It regulates again once
-/// the voltage has crossed the set-point. Slack buses and buses with q_min above q_max have no limits.
+///   the voltage has crossed the set-point. Slack buses and buses with q_min above q_max have no limits.
 /// - In every island at least one slack bus sets the angle and balances the power.
 /// - Between solutions, every switched shunt outside its band moves by one step. A shunt that would reverse
 ///   its direction stops.
