@@ -81,8 +81,8 @@ inline T clamp(const T& a, const T& low, const T& high) {
   return select(a < low, low, select(high < a, high, a));
 }
 
-/// Returns the plain value of any scalar (lane 0 of a pack). Use it only in messages and in `if` conditions
-/// of code that runs in double.
+/// Returns the plain value of any scalar (lane 0 of a pack). Equations may use it only in messages and in
+/// `if` conditions of code that runs in double.
 inline double value_of(double a) { return a; }
 /// Returns the value of the first lane.
 template <class S, int N>

@@ -184,7 +184,7 @@ class Linearised {
     covariance += moved * moved.transpose();
   }
   /// Adds the covariance of a voltage step at an unknown time between two samples. A uniform distribution of
-  /// this time has the variance step^2/12.
+  /// this time has the variance step^2/12. The extrapolated voltages on both sides are uncertain as well.
   void leap(const States<D8>& x, std::size_t k, Linear& l) {
     const Interval& i = record_.behind[k];
     open(x, i.before, i.after, record_.step / std::sqrt(12.0), l.unsure);
