@@ -38,7 +38,7 @@ double event_time(const std::string& text, double t_end, const std::string& wher
   return t;
 }
 
-/// Returns the fields of `text`; none, with a problem, if their number is not in `least` to `most`.
+/// Returns the fields of `text`. Returns none, with a problem, unless their number is `least` to `most`.
 std::vector<std::string> fields(const std::string& text, std::size_t least, std::size_t most,
                                 const std::string& form, const std::string& where, Problems& problems) {
   auto part = fields(text);
@@ -47,9 +47,9 @@ std::vector<std::string> fields(const std::string& text, std::size_t least, std:
   return {};
 }
 
-/// Returns the branches between two buses with this circuit, or the winding at the first bus of a
-/// three-winding transformer that connects both. For three buses: every winding in service of the transformer
-/// between them.
+/// Returns the branches between two buses with this circuit id. Of a three-winding transformer that connects
+/// both buses, this is the winding at the first bus. For three buses, returns every winding in service of the
+/// transformer between them.
 std::vector<int> branches_named(const std::vector<std::string>& ends, const std::string& circuit,
                                 const network::Network& network) {
   const auto bus_of = [&](int index) -> const network::Bus& {

@@ -1,6 +1,6 @@
 #pragma once
-// Parser of events on a command line. Every error of a text becomes a problem that names `where`; the
-// returned value is then unspecified. `t_end`: end of the run [s]; later times are errors.
+// Parser of events on a command line. Every error becomes a problem that names `where`, and the returned
+// value is then unspecified. `t_end`: end of the run [s]; later times are errors.
 #include <string>
 #include <vector>
 
@@ -25,13 +25,13 @@ std::vector<network::LineTrip> read_line_trip(const std::string& text, const net
                                               double t_end, const std::string& where, Problems& problems);
 /// Reads "R:X" [pu on the network's base].
 Complex read_impedance(const std::string& text, const std::string& where, Problems& problems);
-/// Reads "BUS[/ID]:T" [s], or "BUS[/ID]:T:PART" for a fraction of its units.
+/// Reads "BUS[/ID]:T[:PART]". T: time [s]; PART: fraction of the generator's units that trips, default 1.
 network::GeneratorTrip read_generator_trip(const std::string& text, const network::Network& network,
                                            double t_end, const std::string& where, Problems& problems);
 /// Reads "BUS:P:Q:T_ON[:T_OFF]", P in MW, Q in Mvar, positive: more consumption.
 network::LoadStep read_load_step(const std::string& text, const network::Network& network, double t_end,
                                  const std::string& where, Problems& problems);
-/// Reads "BUS[/ID]:T:STEP" [s, pu], a step of the exciter's reference if `voltage`, else of the governor's.
+/// Reads "BUS[/ID]:T:STEP" [s, pu]: a step of the exciter's reference if `voltage`, else of the governor's.
 network::SetpointStep read_setpoint_step(const std::string& text, const network::Network& network,
                                          double t_end, bool voltage, const std::string& where,
                                          Problems& problems);

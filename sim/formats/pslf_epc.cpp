@@ -29,8 +29,8 @@ RawSurvey parse_epc_survey(const std::string& text, const std::string& name, con
 namespace epc {
 namespace {
 
-/// Parses a section header "bus data  [  9]   ty ...". Returns name and announced number of records; an empty
-/// name for other lines.
+/// Parses a section header "bus data  [  9]   ty ...". Returns the section's name and announced number of
+/// records; for other lines, an empty name.
 std::pair<std::string, int> header_of(const std::string& line) {
   constexpr std::string_view word = " data";
   const std::string text = pslf::lower(pslf::trimmed(line));

@@ -1,5 +1,5 @@
 #pragma once
-// PSLF .epc files: reader of the network of a PSLF case.
+// Reader of PSLF .epc files, which contain the network of a case.
 #include <filesystem>
 #include <string>
 
@@ -8,19 +8,20 @@
 
 namespace swingbank::sim::formats {
 
-/// Reads an .epc. Throws InputError with every fault of the file, each with its line number. Changes to the
+/// Reads an .epc. Throws InputError with every error of the file, each with its line number. Changes to the
 /// data are recorded in Network::remarks.
 ///
-/// The file is text in sections. "title", "comments" and "solution parameters" (only sbase is used) each end
-/// at a line '!'. The sections "bus data [count] ..." and so on follow up to "end". A record is "equipment :
-/// values"; '/' at the end of a line continues it on the next; '#' and '@' begin comments. A section must
-/// have the announced number of records.
+/// The file begins with "title", "comments" and "solution parameters" (only sbase is used); each ends at a
+/// line '!'. Sections such as "bus data [count] ..." follow, up to "end". A record is "equipment : values". A
+/// '/' at the end of a line continues the record on the next; '#' and '@' begin comments. A section must have
+/// the announced number of records.
 ///
 /// Read:
 /// - bus; load; branch (line sections in series are combined);
 /// - transformer with two windings, and with three (a star point at the file's internal bus, else at a new
 ///   bus, numbered above all others); the ratio of a primary winding is tapp + tapfp - 1;
-/// - shunt, at a bus or at an end of a branch; svd (at g + jb, with its steps and band for type 1);
+/// - shunt, at a bus or at an end of a branch;
+/// - svd: a shunt g + jb, which can switch its steps within its band if its type is 1;
 /// - generator, which regulates its bus to vsched;
 /// - converter of a dc line, which becomes its power at the file's voltages.
 ///
@@ -29,16 +30,16 @@ namespace swingbank::sim::formats {
 /// Impedance correction, motors and every other non-empty section are dropped with a remark. Refused: a line
 /// in ohms or with a transformer inside. A case has no frequency: the caller gives RawOptions::frequency_hz.
 ///
-/// Sources: headers and records of public files written by PSLF (InterPSS, a case of 18 buses), by PowerWorld
-/// (GridDyn, IEEE test cases) and by BPA's power flow (ext_geb*.f), and the columns of version 15 as listed
-/// in InterPSS's readers. configs/networks/README.md has the table.
+/// Sources: public files written by PSLF (InterPSS, a case of 18 buses), by PowerWorld (GridDyn, IEEE test
+/// cases) and by BPA's power flow (ext_geb*.f); the columns of version 15 in InterPSS's readers.
+/// configs/networks/README.md lists the columns.
 network::Network read_epc(const std::filesystem::path& file, const RawOptions& options);
-/// The same from a text; `name` replaces the file name in messages.
+/// The same for a string; `name` replaces the file name in messages.
 network::Network parse_epc(const std::string& text, const std::string& name, const RawOptions& options);
 
-/// Reads an .epc, but continues after faults, as survey_raw does.
+/// Reads an .epc, but continues after errors and returns them, as survey_raw does.
 RawSurvey survey_epc(const std::filesystem::path& file, const RawOptions& options);
-/// The same from a text; `name` replaces the file name in messages.
+/// The same for a string; `name` replaces the file name in messages.
 RawSurvey parse_epc_survey(const std::string& text, const std::string& name, const RawOptions& options);
 
 /// Returns true if the file name has the extension .epc.

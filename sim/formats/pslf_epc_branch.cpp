@@ -1,6 +1,7 @@
-// Reader of branches and transformers of an .epc. The sections of a line are in series, without buses between
-// them. A transformer's impedances are per unit of tbase and of the windings' nominal voltages. In per unit
-// of bus voltages a winding is an ideal ratio: nominal voltage divided by the bus voltage, times its tap.
+// Reader of the branches and transformers of an .epc. The sections of a line are in series, without buses
+// between them. A transformer's impedances are per unit of tbase and of the windings' nominal voltages. In
+// per unit of the bus voltages, a winding is an ideal ratio: its nominal voltage over the bus's, times its
+// tap.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,7 +47,7 @@ double angle(Fields& f, std::size_t column, const char* name) {
   return static_cast<double>(f.number(column, name, 0.0L) / psse::kDegrees);
 }
 
-/// Returns the nominal voltage divided by the bus voltage, or 1 if the file does not have both.
+/// Returns the winding's nominal voltage divided by that of its bus, or 1 if either is missing.
 long double nominal(Fields& f, std::size_t column, const char* name, double kv) {
   const long double v = f.number(column, name, 0.0L);
   return v > 0 && kv > 0 ? v / static_cast<long double>(kv) : 1.0L;
@@ -225,7 +226,7 @@ int EpcReader::star_point(const std::array<int, 3>& ends, int internal, const st
   star.name = "STAR " + ends_text(at(ends[0]).number, at(ends[1]).number) + "-" +
               std::to_string(at(ends[2]).number) + " " + circuit;
   for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
-  star.kv = 0.0;  // windings of three voltages meet here: no nominal voltage
+  star.kv = 0.0;  // no nominal voltage: windings of three voltages meet here
   star.type = on ? network::BusType::load : network::BusType::isolated;
   star.vm = at(ends[0]).vm;
   star.va = at(ends[0]).va;

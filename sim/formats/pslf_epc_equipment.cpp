@@ -95,8 +95,8 @@ void EpcReader::shunt(const Row& row) {
     network_.shunts.push_back(std::move(s));
 }
 
-/// Reads a shunt of a branch, which is switched with the branch. Id 'f...' is at the first bus of the record,
-/// 't...' at the second.
+/// Reads a shunt that is switched with a branch. An id 'f...' means the end at the record's first bus, 't...'
+/// the end at its second bus.
 void EpcReader::line_shunt(Fields& of, Fields& f, Complex y) {
   const int from = find_bus(of.integer(0, "bus number"), of), to = find_bus(of.integer(4, "far bus"), of);
   const std::string id = id_of(of, 3), circuit = id_of(of, 7);
@@ -142,8 +142,8 @@ void EpcReader::svd(const Row& row) {
   network_.shunts.push_back(std::move(s));
 }
 
-/// Reads the steps of an svd. Type 1 regulates its bus to vsched within vband. The second line has pairs of
-/// number and size of steps; reactors and capacitors accumulate separately.
+/// Reads the steps of an svd of type 1, which regulates a bus to vsched within vband. The second line has
+/// pairs of number and size of steps. Reactors and capacitors accumulate separately.
 void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regulated, Fields& f) {
   constexpr std::size_t columns = 26, blocks = 10;
   const std::size_t first = row.starts.empty() ? columns : row.starts[0];

@@ -1,5 +1,5 @@
 #pragma once
-// PSS/E .raw (versions 23 to 35), .rawx and .dyr files: readers and writer.
+// Readers of PSS/E .raw (versions 23 to 35), .rawx and .dyr files, and the writer of .raw files.
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -13,24 +13,25 @@
 
 namespace swingbank::sim::formats {
 
-/// Treatment of equipment with a duplicate identity (buses and id). A duplicate bus is always dropped.
+/// Treatment of equipment with a duplicate identity (buses and id). For a duplicate bus, `refused` applies
+/// always.
 enum class Repeated {
   refused,   ///< a problem; dropped with RawOptions::drop_refused
   kept,      ///< kept under a new id
   voltages,  ///< kept under a new id or dropped, whichever agrees with the file's voltages
 };
 
-/// Options for data that a .raw does not determine.
+/// Options for missing data and for data that the reader would otherwise refuse.
 struct RawOptions {
-  /// Equipment without a model; network::replace_devices.
+  /// Replacement of equipment without a model (network::replace_devices).
   network::DeviceReplacement devices = network::DeviceReplacement::checked;
   std::optional<double> frequency_hz = {};  ///< frequency if BASFRQ is missing [Hz]
-  bool needs_frequency = true;              ///< false: a file without a frequency is accepted; do not use it
-  int version = 0;                          ///< version if REV is missing; 0: not given
-  /// Drop duplicate equipment, equipment at a missing bus, and references to a missing impedance correction
-  /// table or to an empty voltage band.
+  bool needs_frequency = true;  ///< false: if the file has no frequency, Network::frequency is 1 Hz
+  int version = 0;              ///< version if REV is missing; 0: not given
+  /// Drops duplicate equipment and equipment at a missing bus. Ignores references to a missing impedance
+  /// correction table, and keeps a switched shunt with an empty voltage band at BINIT.
   bool drop_refused = false;
-  Repeated repeated = Repeated::refused;  ///< duplicate equipment
+  Repeated repeated = Repeated::refused;  ///< treatment of duplicate equipment
   RawOptions() = default;
   /// Constructs the options from system frequency [Hz] (none: from the file) and version (0: not given).
   RawOptions(std::optional<double> hz, int rev = 0) : frequency_hz(hz), version(rev) {}
@@ -38,24 +39,25 @@ struct RawOptions {
   RawOptions(double hz) : frequency_hz(hz) {}
 };
 
-/// Reads a .raw file of version 23 to 35, or a .rawx. Throws InputError with every fault of the file, each
+/// Reads a .raw file of version 23 to 35, or a .rawx. Throws InputError with every error of the file, each
 /// with its line number. Changes to the data are recorded in Network::remarks.
 ///
 /// Read:
 /// - header, bus, load, fixed shunt, generator, branch;
 /// - system switching device (a closed one is a line with its X);
-/// - transformer with two windings, and with three (a new bus, numbered above every bus of the file, is the
-///   star point, and each winding is a transformer to it); CW 1-3, CZ 1-3, CM 1-2, impedance correction
-///   tables at the present tap or angle;
-/// - switched shunt (BINIT as a fixed shunt, with its steps and band if MODSW is 1, with a remark for other
-///   control modes);
+/// - transformer with two windings; CW 1-3, CZ 1-3, CM 1-2, impedance correction at the present tap or angle;
+/// - transformer with three windings: the star point is a new bus, numbered above every bus of the file, and
+///   each winding is a transformer to it;
+/// - switched shunt: a fixed shunt of BINIT, which can switch its steps within its band if MODSW is 1; other
+///   control modes give a remark;
 /// - remote regulation (IREG, RMPCT).
 ///
 /// Changed, with a remark:
 /// - zero-impedance branches are given an impedance (raise_impedance);
 /// - dc lines, FACTS and GNE devices and induction machines become their power at the file's voltages;
-/// - VMSTAR <= 0 becomes 1; SBASE1-2 <= 0 becomes SBASE if CZ = 1;
-/// - IREG and SWREG of a missing bus become the own bus;
+/// - VM <= 0 and VMSTAR <= 0 become 1 pu; MBASE <= 0 becomes SBASE, and so does SBASE1-2 <= 0 if CZ = 1;
+/// - a generator with VS <= 0 regulates its own bus to VM;
+/// - if the bus of IREG or SWREG is missing, the generator or shunt regulates its own bus;
 /// - distributed generation inside a load is subtracted from its P and Q;
 /// - the changes of settle_generators and settle_islands.
 ///
@@ -65,37 +67,40 @@ struct RawOptions {
 /// - ratings, names of branches, vector groups, voltage limits;
 /// - tap and load-flow controls (taps are fixed), substations without split buses.
 ///
-/// Refused, with section and line: buses that a substation's open switches split. Out-of-service loads and
-/// shunts are dropped. Equipment at an isolated bus (type 4) is out of service, as in PSS/E.
+/// Refused, with section and line: a bus that open switches of a substation split, and buses that its closed
+/// switches join. Out-of-service loads and shunts are dropped. Equipment at an isolated bus (type 4) is out
+/// of service, as in PSS/E.
 ///
 /// Defaults of PSS/E for empty fields: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
-/// powers 0, AREA, ZONE and OWNER 1 (a load's: its bus's); generator ID '1', PG 0, QG 0, QT 9999, QB -9999,
-/// VS 1, IREG 0, RMPCT 100, MBASE = SBASE, ZR 0, ZX 1, RT 0, XT 0, GTAP 1, STAT 1; branch CKT '1', R 0, B 0,
-/// line shunts 0, ST 1; transformer K 0, CKT '1', CW 1, CZ 1, CM 1, MAG1 0, MAG2 0, STAT 1, R 0, SBASE =
-/// SBASE of the system, WINDV 1 (CW 2: BASKV), NOMV 0 (= BASKV), ANG 0, TAB 0, VMSTAR 1, ANSTAR 0; SBASE 100.
-/// Everything else (bus numbers, X of branches, switches and transformers, REV, BASFRQ) must be given.
+/// powers 0, AREA, ZONE and OWNER 1 (of a load: those of its bus); generator ID '1', PG 0, QG 0, QT 9999, QB
+/// -9999, VS 1, IREG 0, RMPCT 100, MBASE = SBASE, ZR 0, ZX 1, RT 0, XT 0, GTAP 1, STAT 1; branch CKT '1', R
+/// 0, B 0, line shunts 0, ST 1; transformer K 0, CKT '1', CW 1, CZ 1, CM 1, MAG1 0, MAG2 0, STAT 1, R 0,
+/// SBASE = SBASE of the system, WINDV 1 (CW 2: BASKV), NOMV 0 (= BASKV), ANG 0, TAB 0, VMSTAR 1, ANSTAR 0;
+/// SBASE 100. Everything else (bus numbers, X of branches, switches and transformers, REV, BASFRQ) must be
+/// given.
 network::Network read_raw(const std::filesystem::path& file, const RawOptions& options = {});
-/// The same from a text; `name` replaces the file name in messages, and its extension identifies a .rawx.
+/// The same for a string. `name` replaces the file name in messages; its extension identifies a .rawx.
 network::Network parse_raw(const std::string& text, const std::string& name, const RawOptions& options = {});
 
-/// The readable part of a case, for the extraction of single units.
+/// Readable part of a case, from which single units can be extracted.
 struct RawSurvey {
   network::Network network;                      ///< readable part of the network
   std::vector<int> generator_line, branch_line;  ///< first line of each record in the file
-  std::vector<Problem> faults;                   ///< faults, with their lines
+  std::vector<Problem> faults;                   ///< errors, with their lines
 };
-/// Reads a .raw or .rawx as read_raw does, but continues after faults and returns them. Data that concern
-/// only the network, not its units, are not completed. Throws InputError without a header of a known version.
+/// Reads a .raw or .rawx as read_raw does, but continues after errors and returns them. The steps that
+/// complete the network (devices, duplicates, islands) are omitted. Throws InputError if the header has no
+/// known version.
 RawSurvey survey_raw(const std::filesystem::path& file, const RawOptions& options = {});
-/// The same from a text; `name` replaces the file name in messages.
+/// The same for a string; `name` replaces the file name in messages.
 RawSurvey parse_raw_survey(const std::string& text, const std::string& name, const RawOptions& options = {});
 
-/// Throws InputError, with one sentence, if the first lines show that a .raw and a .dyr are exchanged or that
-/// one of them has the other's format.
+/// Throws InputError if the first lines show that a .raw and a .dyr are exchanged, or that both files have
+/// the same format.
 void refuse_exchanged(const std::filesystem::path& raw, const std::filesystem::path& dyr);
 
-/// Writes version 32, 33, 34 or 35. Reading it restores all values bit by bit (except `origin`). Lines
-/// precede transformers. Throws InputError if the file cannot be written or a branch has no .raw form. Such
+/// Writes version 32, 33, 34 or 35, lines before transformers. Reading it restores all values bit by bit
+/// (except `origin`). Throws InputError if the file cannot be written or a branch has no .raw form. Such
 /// branches are lines with a tap or phase shift, and transformers with charging or a far-end shunt.
 void write_raw(const network::Network& network, const std::filesystem::path& file, int version = 33);
 /// Returns the text that write_raw writes; `name` replaces the file name in messages.
@@ -108,13 +113,13 @@ struct DyrRecord {
   std::vector<double> values;  ///< parameters, in the order of the file
   int line;                    ///< first line in the file
   std::string user{};          ///< name of a user-written model (model USRMDL and variants), otherwise empty
-  Problems faults{};           ///< non-numeric parameters; relevant only if the model is used
+  Problems faults{};           ///< errors of non-numeric parameters; they matter only if the model is used
   std::vector<int> empty{};    ///< empty parameters, counted from 1; their value is zero
   std::size_t codes = 0;       ///< user-written models: number of PSS/E codes at the beginning of `values`
   /// Text in place of the bus number (`bus` is 0): an extended bus name, or equipment without a bus (dc
   /// lines, FACTS devices), which has no id.
   std::string equipment{};
-  bool unended = false;  ///< true if the next record or the end of the file terminates it, not '/'
+  bool unended = false;  ///< true if no '/' ends it, but the next record or the end of the file
   /// A quoted, non-numeric parameter. Its value is 0; a model that accepts no text there reports `fault`.
   struct Text {
     std::size_t at;  ///< index into `values`
@@ -142,21 +147,21 @@ DyrOptions read_dyr_options(Config& config, const std::string& prefix);
 /// that begins like a record (bus number, 'MODEL'), or the end of the file, also ends a record, which is then
 /// `unended`. Ctrl-Z, a line with Q alone and a record with 0 alone end the file.
 ///
-/// Non-numeric parameters are faults of the record. All other errors are thrown together as an InputError,
-/// with line numbers. An ignored or mapped name that does not occur in the file is an error too.
+/// Non-numeric parameters are stored in DyrRecord::faults. All other errors are thrown together as an
+/// InputError, with line numbers. An ignored or mapped name that does not occur in the file is an error too.
 std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options = {});
-/// The same from a text; `name` replaces the file name in messages.
+/// The same for a string; `name` replaces the file name in messages.
 std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,
                                  const DyrOptions& options = {});
 
-/// The readable records of a .dyr, and the errors of the other text.
+/// Readable records of a .dyr, and the errors of the rest.
 struct DyrSurvey {
   std::vector<DyrRecord> records;  ///< records, in the order of the file
-  std::vector<Problem> faults;     ///< without those of DyrRecord::faults
+  std::vector<Problem> faults;     ///< errors other than those in DyrRecord::faults
 };
-/// Reads a .dyr, but returns its errors. Throws InputError only if the file cannot be read at all.
+/// Reads a .dyr and returns its errors. Throws InputError only if the file cannot be read at all.
 DyrSurvey survey_dyr(const std::filesystem::path& file);
-/// The same from a text; `name` replaces the file name in messages.
+/// The same for a string; `name` replaces the file name in messages.
 DyrSurvey parse_dyr_survey(const std::string& text, const std::string& name);
 
 }  // namespace swingbank::sim::formats

@@ -1,5 +1,5 @@
-// Reader of .raw equipment without a model: dc lines, FACTS and GNE devices, induction machines. Only their
-// buses are read; their power follows from the file's solved voltages.
+// Reader of .raw equipment without a model: dc lines, FACTS and GNE devices, induction machines. Only buses
+// and scheduled dc powers are read; the power follows from the file's solved voltages.
 #include <algorithm>
 #include <cmath>
 
@@ -44,8 +44,8 @@ void RawReader::two_terminal_dc(const Record& first) {
 }
 
 /// Returns the scheduled consumption of a two-terminal dc line at its rectifier and its inverter [pu].
-/// Fields: MDC (1: power, 2: current), RDC [ohm], SETVL [MW, A], VSCHD [kV]; SETVL < 0 is the inverter's
-/// power.
+/// Fields: MDC (1: power, 2: current), RDC [ohm], SETVL [MW or A], VSCHD [kV]. A negative SETVL is the power
+/// at the inverter.
 std::vector<double> RawReader::scheduled(Fields& f) const {
   const int mode = f.integer(1, "MDC", 0);
   const long double r = f.number(2, "RDC", 0.0L), set = f.number(3, "SETVL", 0.0L),

@@ -1,4 +1,4 @@
-// Reader of .dyr files, with the options to ignore or to map models.
+// Reader of .dyr files; models can be ignored or read as other models.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace swingbank::sim::formats {
 namespace {
 
-/// Returns true if the whole line is a comment ('//' or '@!'). Such lines may occur within a record.
+/// Returns true if the whole line is a comment ('//' or '@!'). Such lines may occur inside a record.
 bool is_comment(const std::string& line) {
   const auto first = line.find_first_not_of(" \t");
   return first != std::string::npos &&
@@ -132,7 +132,7 @@ class DyrReader {
     psse::Fields fields(record, name_, problems_);
     const std::string model = capitals(fields.text(1, ""));
     const bool user = model.starts_with("USR");
-    // The name of a user-written model is the last text before the numbers: after the id, or in its place.
+    // The name of a user-written model is the last string before the numbers: after the id, or in its place.
     const bool named_fourth = user && fields.size() > 3 && record.fields[3].quoted;
     const std::string user_name = user ? capitals(fields.text(named_fourth ? 3 : 2, "")) : "";
     if (leave_out(model, user_name, record.line)) return;

@@ -130,7 +130,7 @@ void RawReader::switched_shunt(const Record& record) {
   s.id = id == "1" ? "SW" : "SW" + id;
   while (std::ranges::any_of(network_.shunts,
                              [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; }))
-    s.id += "+";  // a fixed shunt has this id; both must be writable as fixed shunts
+    s.id += "+";  // another shunt has this id, and the writer writes both as fixed shunts
   switching(f, s);
   network_.shunts.push_back(std::move(s));  // also at 0 Mvar, because a model may refer to it
 }
@@ -282,7 +282,7 @@ void RawReader::raise_impedance(network::Branch& b, const Fields& f) {
     network::raise_impedance(network_, b.r, b.x, network_.branch_text(b) + " (" + f.where() + ")");
 }
 
-// Reads a switching device; a closed switch is a line with its reactance. NSTAT, ratings and type are
+// Reads a switching device as a line with its reactance, in service if closed. NSTAT, ratings and type are
 // ignored.
 void RawReader::switching_device(const Record& record) {
   Fields f(record, file_, problems_);

@@ -1,4 +1,4 @@
-// Detection of files of a wrong kind or version: one sentence in place of a fault per line.
+// Detection of files of a wrong kind or version, to report one error in place of one per line.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -80,8 +80,8 @@ std::size_t RawReader::faults_as(int version, std::size_t most) {
 std::optional<Problem> other_version(const std::vector<std::string>& lines, const std::string& name,
                                      const RawOptions& options, int read_as,
                                      const std::vector<Problem>& faults) {
-  // Fewer faults are reported individually. Another version is accepted if it has kTimesFewer times fewer
-  // faults.
+  // Fewer errors are reported one by one. Another version is likely if it has at most 1/kTimesFewer of the
+  // errors.
   constexpr std::size_t kReportedSingly = 3, kTimesFewer = 10;
   if (faults.size() < kReportedSingly || read_as == 0) return {};
   constexpr std::array kVersions = {33, 34, 35, 32, 31, 30, 29, 28, 27, 26, 25, 24, 23};

@@ -1,6 +1,6 @@
-// Reader of .rawx: the tables of version 35 as JSON. Every row is converted to a record of a .raw, so that
-// both formats have one reader of equipment. Source: PSS/E data format manual, "Extensible Power Flow Data
-// File".
+// Reader of .rawx files: the tables of version 35 as JSON. Every row is converted to a record of a .raw, so
+// that both formats share the readers of equipment. Source: PSS/E data format manual, "Extensible Power Flow
+// Data File".
 #include <span>
 
 #include "base/json.hpp"

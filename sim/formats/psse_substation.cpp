@@ -1,7 +1,7 @@
-// Reader of substations of versions 34 and 35: the nodes and switches within the buses. The bus sections
-// describe the grid with closed switches merged, so that a substation does not affect the equations if every
-// bus is connected. A bus that open switches split, or that a closed switch joins to another bus, is refused.
-// Source: PSS/E data format manual, "Substation Data".
+// Reader of the substations of versions 34 and 35: nodes and switches inside the buses. The other sections
+// describe the grid with closed switches merged, so a substation adds no equations if every bus is connected.
+// A bus that open switches split, or that a closed switch joins to another bus, is refused. Source: PSS/E
+// data format manual, "Substation Data".
 #include <functional>
 
 #include "sim/formats/detail/psse_raw.hpp"
@@ -10,7 +10,7 @@ namespace swingbank::sim::formats::psse {
 
 struct RawReader::Substation {
   struct Node {
-    int bus, root, line;  ///< root: of the union-find forest, initially the node itself
+    int bus, root, line;  ///< root: parent in the union-find forest, initially the node itself
   };
   std::string name;
   std::map<int, Node> nodes;
@@ -21,7 +21,8 @@ struct RawReader::Substation {
   }
 };
 
-/// Reads the rows of one of a substation's three blocks, up to '0'. Returns false if the file ends before it.
+/// Reads the rows of one of a substation's three blocks, up to '0'. Returns false if the file ends before
+/// '0'.
 bool RawReader::part_of_substation(const char* name, const std::function<void(const Record&)>& row) {
   while (auto record = next()) {
     if (ends_section(*record)) return true;
@@ -76,7 +77,7 @@ void RawReader::substation(const Record& first) {
 
 void RawReader::check_substation(const Substation& read) {
   Substation station = read;
-  std::map<int, int> piece_of, bus_of;  // bus -> root of its nodes with equipment, and back
+  std::map<int, int> piece_of, bus_of;  // bus -> root of its nodes with equipment; root -> bus
   const auto where = [&](int line) { return file_ + ":" + std::to_string(line); };
   for (const auto& [node, line] : station.terminals) {
     const int bus = station.nodes.at(node).bus, root = station.root(node);

@@ -158,8 +158,8 @@ std::optional<long double> parse_number(std::string text) {
     if (c == 'd' || c == 'D') c = 'e';
   char* end = nullptr;
   long double value = std::strtold(text.c_str(), &end);
-  // Double rounding, to extended precision and then to double, would give a double other than the nearest for
-  // one decimal in 2,000.
+  // Rounding twice, to extended precision and then to double, misses the nearest double for one decimal in
+  // 2,000.
   if (const double nearest = std::strtod(text.c_str(), nullptr); static_cast<double>(value) != nearest)
     value = std::nextafter(value, static_cast<long double>(nearest));
   // A value beyond the range of double would become infinite later.
@@ -171,7 +171,7 @@ std::string shortest(double value, long double scale) {
   if (!std::isfinite(value)) return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";  // in messages
   const long double scaled = scale * static_cast<long double>(value);
   char text[64];
-  // At least the digits before the decimal point, so that 100 is not written as 1e+02.
+  // All digits before the decimal point, so that 100 is not written as 1e+02.
   const int whole = value == 0.0 ? 1 : static_cast<int>(std::floor(std::log10(std::abs(scaled)))) + 1;
   for (int digits = std::clamp(whole, 1, 12); digits <= 21; ++digits) {
     std::snprintf(text, sizeof text, "%.*Lg", digits, scaled);

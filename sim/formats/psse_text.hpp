@@ -22,21 +22,21 @@ struct Record {
   int line = 0;               ///< in the file, from 1
   bool ended = false;         ///< true if it ends with '/'
   std::vector<Field> fields;  ///< fields in order
-  std::string place = {};     ///< place for messages, if it is not a line of the file
+  std::string place = {};     ///< place in messages, if it is not a line of the file
 };
 
 /// Returns the lines of a text file without their line ends. Throws InputError if it cannot be read.
 std::vector<std::string> read_lines(const std::filesystem::path& file);
-/// The same of a text.
+/// The same for a string.
 std::vector<std::string> lines_of(const std::string& text);
 /// Characters that begin a comment at the end of a line of a .raw or .dyr, in place of a field.
 constexpr std::string_view kCommentMarks = "#!";
 /// Splits one line. An open quote becomes a problem. One of `comment_marks` in place of a field ends the
-/// line. The first fields, which contain names and ids, may begin with such a character after a comma.
+/// line. After a comma, a name or id among the first four fields may begin with such a character.
 Record split(const std::string& line, int number, const std::string& file, Problems& problems,
              std::string_view comment_marks = {});
 
-/// Returns true for a record that begins with 0 (ends_section) or Q (ends_file).
+/// Returns true for a record that begins with 0.
 bool ends_section(const Record& record);
 /// Returns true for a record that begins with Q.
 bool ends_file(const Record& record);
@@ -45,11 +45,11 @@ bool ends_file(const Record& record);
 /// line.
 class Fields {
  public:
-  /// Constructs the access; `record` and `problems` must outlive it. `file`: name in messages.
+  /// `record` and `problems` must outlive the object. `file`: name in messages.
   Fields(const Record& record, std::string file, Problems& problems)
       : record_(record), file_(std::move(file)), problems_(problems) {}
-  /// Returns the value of field `i`, or the fallback (zero without one) if there is no valid value. Without a
-  /// fallback the field is required.
+  /// Returns the value of field `i`. An invalid value is a problem; a missing field is one if there is no
+  /// `fallback`. The result is then the fallback, or zero without one.
   int integer(std::size_t i, const char* name, std::optional<int> fallback = {});
   /// Returns the value of field `i`, as integer() does.
   long double number(std::size_t i, const char* name, std::optional<long double> fallback = {});
@@ -72,15 +72,16 @@ class Fields {
   Problems& problems_;
 };
 
-/// Parses a finite decimal number, including 'D' exponents. Returns none for any other text.
+/// Parses a finite decimal number, including 'D' exponents. Returns none for any other string.
 std::optional<long double> parse_number(std::string text);
 
-/// Returns the shortest decimal of `scale * value` that restores `value` if the reader divides by `scale` in
-/// extended precision. Double precision is insufficient: not every double x has a double y with y/scale == x.
+/// Returns the shortest decimal of `scale * value` that restores `value` when a reader divides it by `scale`
+/// in extended precision. Double precision is insufficient: not every double x has a double y with y/scale ==
+/// x.
 std::string shortest(double value, long double scale = 1.0L);
-/// Degrees per radian: files have degrees, the network radians.
+/// Degrees per radian: files contain degrees, the network radians.
 constexpr long double kDegrees = 180.0L / std::numbers::pi_v<long double>;
-/// Returns 'name', with inner quotes doubled.
+/// Returns the text in single quotes, with inner quotes doubled.
 std::string quote(const std::string& text);
 
 }  // namespace swingbank::sim::formats::psse

@@ -1,7 +1,7 @@
-// Reader of transformers with two and three windings. In per unit of bus voltages a winding is an ideal ratio
-// t:1. Two windings are t1:1, the impedance, 1:t2; referred to one side: tap = t1/t2 with impedance z t2^2.
-// Three windings meet in a star point: each has t:1 and the star equivalent of the three impedances between
-// pairs. Source: PSS/E Program Operation Manual, "Transformer Data".
+// Reader of transformers with two and three windings. In per unit of the bus voltages, a winding is an ideal
+// ratio t:1. A two-winding transformer is t1:1, the impedance z, 1:t2; this equals tap = t1/t2 with impedance
+// z t2^2. Three windings meet at a star point. Each has its ratio t:1 and one branch of the star equivalent
+// of the three pairwise impedances. Source: PSS/E Program Operation Manual, "Transformer Data".
 #include <algorithm>
 #include <cmath>
 
@@ -175,7 +175,7 @@ int RawReader::star_point(const std::string& circuit, Fields& impedances, const 
   star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
   star.name = "STAR " + number(0) + "-" + number(1) + "-" + number(2) + " " + circuit;
   for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
-  star.kv = 0.0;  // windings of three voltages meet here: no nominal voltage
+  star.kv = 0.0;  // no nominal voltage: windings of three voltages meet here
   star.type = in_service ? network::BusType::load : network::BusType::isolated;
   star.vm = static_cast<double>(impedances.number(9, "VMSTAR", 1.0L));
   star.va = static_cast<double>(impedances.number(10, "ANSTAR", 0.0L) / kDegrees);
@@ -237,8 +237,8 @@ void RawReader::three_windings(std::span<const Record> rows, const std::array<in
   }
 }
 
-/// Reads one table of pairs of T and factor (from version 34 complex). It ends with a zero or with the
-/// record; from version 34 it continues over lines until a point is zero.
+/// Reads one correction table: points of T and factor, which is complex from version 34 on. A zero point or
+/// the end of the record ends the table; from version 34 on, it continues over lines until a zero point.
 void RawReader::correction_table(const Record& first) {
   const std::size_t width = version_ >= 34 ? 3 : 2;
   Fields head(first, file_, problems_);
@@ -271,8 +271,8 @@ void RawReader::correction_table(const Record& first) {
                   head.where(), "T must ascend", "sort them by T");
 }
 
-/// Corrects impedances at the present tap or angle. Points between 0.5 and 1.5 are ratios, others angles in
-/// degrees. The factor is interpolated linearly and constant beyond the end points.
+/// Corrects impedances at the present tap or angle. T is a ratio if all points are between 0.5 and 1.5, else
+/// an angle in degrees. The factor is interpolated linearly and is constant beyond the end points.
 void RawReader::correct_impedances() {
   for (const Correction& c : corrections_) {
     const auto found = tables_.find(c.table);

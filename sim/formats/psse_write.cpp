@@ -11,7 +11,7 @@ namespace {
 using psse::quote;
 using psse::shortest;
 
-/// Returns the angle in degrees that reads back as `radians`.
+/// Returns the angle in degrees that the reader converts back to exactly `radians`.
 std::string degrees(double radians) { return shortest(radians, psse::kDegrees); }
 
 /// Empty sections after the transformers, in file order.

@@ -31,7 +31,7 @@ constexpr Column kGentpj[] = {  // [1]
     {"lpd", value, 8},  {"lpq", value, 9},   {"lppd", value, 10},      {"lppq", value, 11},
     {"ll", value, 12},  {"s1", value, 13},   {"s12", value, 14},       {"ra", resistance},
     {"rcomp", off},     {"xcomp", off},      {"accel", free, -1, 0.5}, {"kis", value, 15}};
-constexpr Column kGencls[] = {  // verification/refactor/ramp/ee554.exc.dyd of the same
+constexpr Column kGencls[] = {  // the repository of [1], verification/refactor/ramp/ee554.exc.dyd
     {"h", value, 0},     {"d", value, 1}, {"ra", resistance},
     {"lppd", reactance}, {"rcomp", off},  {"xcomp", off}};
 
@@ -171,8 +171,8 @@ constexpr Column kPss2a[] = {  // [2], [4]
     {"ta", off},
     {"tb", off}};
 
-// [7] oel1_dyd.m of MatlabPowerWorld_NumericalComp_FullWECC_CHJ1_RealPMU_XFMR by J. Eisenbarth (writes the
-// line).
+// [7] MatlabPowerWorld_NumericalComp_FullWECC_CHJ1_RealPMU_XFMR by J. Eisenbarth; oel1_dyd.m writes the
+// record.
 constexpr Column kOel1[] = {{"ifdset", value, 0},  {"ifdmax", value, 1},  {"tpickup", value, 2},
                             {"runback", value, 3}, {"tmax", value, 4},    {"tset", value, 5},
                             {"ifcont", value, 6},  {"vfdflag", value, 7}, {"alarm", value, 8}};

@@ -1,5 +1,5 @@
 #pragma once
-// Correspondence of .dyd and .dyr models, column by column; the source is given at each model.
+// Tables that convert .dyd models to .dyr models column by column, with the source of each model.
 #include <span>
 #include <string_view>
 
@@ -7,11 +7,11 @@ namespace swingbank::sim::formats::dyd {
 
 /// Conversion of a column.
 enum class Use {
-  value,      ///< a column of the .dyr
-  mva_power,  ///< a column of the .dyr, proportional to the turbine's rating
-  per_mva,    ///< a column of the .dyr, inversely proportional to the turbine's rating
+  value,      ///< copied to a column of the .dyr
+  mva_power,  ///< copied times the turbine's rating over the machine's base
+  per_mva,    ///< copied divided by the turbine's rating over the machine's base
   again,      ///< repeats the limit of an earlier column; must not be narrower
-  rating,     ///< the turbine's rating [MW], which precedes the values in a .dyd
+  rating,     ///< column of the .dyr for the turbine's rating [MW], which precedes the values in a .dyd
   off,        ///< no counterpart; must have the value that disables it
   open,       ///< a limit without counterpart; must be too wide to act
   free,       ///< no counterpart and no influence on the model
@@ -24,11 +24,11 @@ struct Column {
   std::string_view name;  ///< in lower case
   Use use = Use::value;
   int dyr = -1;                ///< column of the .dyr, from 0
-  double off = 0;              ///< written value; with Use::off also the only accepted one
+  double off = 0;              ///< value written to a .dyd; with Use::off the only accepted value
   std::string_view idle = {};  ///< with Use::off: any value is accepted if this column is 0
 };
 
-/// A model of a .dyd and its counterpart in a .dyr.
+/// A .dyd model and its counterpart in a .dyr.
 struct Model {
   std::string_view dyd, dyr;
   std::string_view base;  ///< "mva" of a machine, "mwcap" of a turbine, empty: none

@@ -21,7 +21,7 @@ struct Row {
   std::vector<std::size_t> starts;  ///< per continuation line: number of `says` fields before it
 };
 
-/// Reads one .epc; each object reads once.
+/// Reader of one .epc; each object reads one file.
 class EpcReader {
  public:
   /// `name` replaces the file name in messages.
@@ -35,12 +35,12 @@ class EpcReader {
   struct Section {
     std::string name;         ///< "bus", "dc converter"
     int announced;            ///< announced number of records
-    std::size_t first, last;  ///< its lines, from 0, `last` excluded
+    std::size_t first, last;  ///< indices of its lines, from 0; `last` excluded
   };
   using Reads = void (EpcReader::*)(const Row&);
 
   void divide();
-  /// Returns the lines up to '!' after a block's title, and advances `at` past the block.
+  /// Returns the lines between a block's title at line `at` and '!', and advances `at` past the block.
   std::vector<std::string> block(std::size_t& at) const;
   void solution_parameters(const std::vector<std::string>& block, std::size_t first);
   void read_sections();
@@ -64,7 +64,7 @@ class EpcReader {
   int star_point(const std::array<int, 3>& ends, int internal, const std::string& circuit, bool on);
   Complex magnetising(psse::Fields& f, int bus);
 
-  /// Returns the index of the bus with this number; otherwise -1, and a problem or a remark.
+  /// As Identities::bus_index().
   int find_bus(int number, const psse::Fields& fields) {
     return identities_.bus_index(index_, number, section_, fields);
   }
@@ -75,7 +75,7 @@ class EpcReader {
   [[nodiscard]] network::Bus& at(int bus) { return network_.buses[static_cast<std::size_t>(bus)]; }
   [[nodiscard]] std::string place(int line) const { return file_ + ":" + std::to_string(line); }
 
-  /// One section of a line in the file; `section` from 1.
+  /// One section of a transmission line; `section`: its number, from 1.
   struct Part {
     network::Branch branch;
     int section, line;

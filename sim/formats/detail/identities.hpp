@@ -18,18 +18,18 @@ class Identities {
   Identities(const RawOptions& options, network::Network& network, Problems& problems)
       : options_(options), network_(network), problems_(problems) {}
 
-  /// Returns the index of the bus with this number. Returns -1 if there is none, with a problem, or with a
-  /// remark if the equipment is to be dropped. `section`: section of the referring record.
+  /// Returns the index of the bus with this number, or -1 if there is none. A missing bus is a problem, or a
+  /// remark if its equipment is to be dropped. `section`: section of the referring record.
   int bus_index(const std::map<int, int>& buses, int number, const std::string& section,
                 const psse::Fields& fields);
-  /// Returns false, with a remark, if this identity ("bus 5") is a duplicate and the equipment is to be
-  /// dropped. A duplicate that is not to be dropped becomes a problem.
+  /// Returns false if this identity ("bus 5") is a duplicate and the equipment must be dropped. A duplicate
+  /// is a problem, or a remark if it is to be dropped.
   bool once(const std::string& identity, const psse::Fields& fields);
-  /// Returns the equipment's id: the given one if "`before` 'id'`after`" is unique, a new one for a duplicate
-  /// that is kept, none for equipment to be dropped. `of`: its kind and bus numbers.
+  /// Returns the equipment's id: the given id if "`before` 'id'`after`" is unique, a new id for a duplicate
+  /// that is kept, none for equipment to be dropped. `of`: kind and bus numbers of the equipment.
   std::optional<std::string> id(network::Duplicate of, const std::string& before, const std::string& given,
                                 const std::string& after, const psse::Fields& fields);
-  /// Returns the equipment with a new id.
+  /// Returns the duplicates that were kept under a new id.
   [[nodiscard]] const std::vector<network::Duplicate>& kept() const { return kept_; }
 
  private:

@@ -19,7 +19,7 @@ std::string trimmed(const std::string& text) {
 }
 
 struct Statement {
-  std::string text;  ///< with newlines within brackets
+  std::string text;  ///< newlines inside brackets are kept
   int line;
 };
 
@@ -105,7 +105,7 @@ class Splitter {
     ++line_;
     put(' ');
   }
-  /// Returns true if a quote transposes the preceding value; elsewhere it begins a text.
+  /// Returns true if a quote transposes the preceding value; elsewhere it begins a string.
   [[nodiscard]] bool transposes() const {
     if (at_ == 0) return false;
     const char before = text_[at_ - 1];

@@ -9,7 +9,7 @@
 
 namespace swingbank::sim::formats::pslf {
 
-/// A word, a quoted text or ':'.
+/// A word, a quoted string or ':'.
 struct Token {
   std::string text;
   bool quoted = false;
@@ -23,14 +23,14 @@ struct Line {
 };
 
 std::string lower(std::string_view text);
-/// Returns the text without blanks and line ends at both ends.
+/// Returns the text without leading and trailing blanks and line ends.
 std::string trimmed(std::string_view text);
 /// Returns true if a line is blank or a comment.
 bool says_nothing(const std::string& line);
-/// Splits a text into words, quoted texts and ':'. An unterminated quote becomes a problem.
+/// Splits a text into words, quoted strings and ':'. An unterminated quote becomes a problem.
 std::vector<Token> tokens_of(const std::string& text, const std::string& where, Problems& problems);
-/// Returns the record that begins at lines[at], before `end`, and advances `at` past its last line. `file`:
-/// for messages.
+/// Returns the record that begins at lines[at] and ends before line `end`. Advances `at` past its last line.
+/// `file`: name in messages.
 Line record_at(const std::vector<std::string>& lines, std::size_t& at, std::size_t end,
                const std::string& file, Problems& problems);
 

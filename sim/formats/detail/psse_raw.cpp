@@ -11,7 +11,7 @@ namespace swingbank::sim::formats {
 namespace {
 bool is_rawx(const std::string& name) { return name.ends_with(".rawx") || name.ends_with(".RAWX"); }
 
-/// Throws InputError with the likely version if many faults are due to a wrong version.
+/// Throws InputError with the likely version if the errors are due to a wrong version.
 void refuse_wrong_version(const std::vector<std::string>& lines, const std::string& name,
                           const RawOptions& options, int read_as, const std::vector<Problem>& faults) {
   if (const auto other = psse::other_version(lines, name, options, read_as, faults)) throw InputError(*other);
@@ -157,7 +157,7 @@ void RawReader::header() {
   Fields f(record, file_, problems_);
   const int change = f.integer(0, "IC", 0);
   base_ = static_cast<double>(
-      f.number(1, "SBASE", 100.0L));  // rounded as in the network, for an exact round trip
+      f.number(1, "SBASE", 100.0L));  // rounded to double as Network::base_mva, for an exact round trip
   std::string comment;
   if (const auto slash = lines_[at_].find('/'); slash != std::string::npos)
     comment = "; the line says \"" + without_return(lines_[at_].substr(slash + 1)) + "\"";
@@ -261,7 +261,7 @@ bool RawReader::section(const Section& section, bool may_be_missing) {
       return true;
     }
     if (ends_file(*record)) return false;
-    // A bus record in place of the system-wide data: the file has no such section.
+    // A bus record here means that the file has no system-wide section.
     if (section.row == &RawReader::system_wide && !first.quoted && parse_number(first.text)) {
       put_back(*record);
       return true;
@@ -279,7 +279,7 @@ bool RawReader::section(const Section& section, bool may_be_missing) {
   return false;
 }
 
-// Solution settings and names of ratings, which do not affect the equations.
+// Ignored: solution settings and names of ratings do not affect the equations.
 void RawReader::system_wide(const Record&) {}
 
 std::optional<std::string> RawReader::circuit_of(int from, int to, const std::string& circuit,

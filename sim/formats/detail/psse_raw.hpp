@@ -16,11 +16,12 @@
 
 namespace swingbank::sim::formats::psse {
 
-/// Columns, counted from 0, of the fields whose position depends on the version. Version 34 inserts twelve
-/// ratings and a name into branches and transformer windings and appends the regulated node. Version 35 moves
-/// the node next to the regulated bus and adds an id to switched shunts. Switched shunts have no status
-/// before 32, no RMPCT before 30, no RMIDNT before 28; before 28 transformers are among the branches. Source:
-/// PSS/E data format manuals, "Power Flow Data"; for 24 to 28 MATPOWER, psse_parse.m.
+/// Columns, counted from 0, of the fields whose position depends on the version. Version 34 has twelve
+/// ratings in place of three in branches and transformer windings. It also adds a name to branches and
+/// appends the regulated node. Version 35 moves the node next to the regulated bus and adds an id to switched
+/// shunts. Switched shunts have no status before version 32, no RMPCT before 30 and no RMIDNT before 28.
+/// Before 28, branch records also describe transformers. Source: PSS/E data format manuals, "Power Flow
+/// Data"; for 24 to 28 MATPOWER, psse_parse.m.
 struct Columns {
   std::size_t gen_base, gen_status;          ///< MBASE (ZR, ZX, RT, XT, GTAP follow), STAT (RMPCT follows)
   std::size_t branch_shunts, branch_status;  ///< GI (BI, GJ, BJ follow), ST
@@ -29,7 +30,7 @@ struct Columns {
   std::size_t switched_status, switched_binit;
   std::size_t bus_area, bus_voltage, bus_owner;  ///< AREA (ZONE follows), VM (VA follows)
 };
-constexpr std::size_t kNoColumn = 999;  ///< beyond every record, so that the default applies
+constexpr std::size_t kNoColumn = 999;  ///< beyond the end of every record: the field takes its default
 constexpr Columns columns(int version) {
   if (version >= 35) return {9, 15, 19, 23, 23, 1, 4, 11, 4, 7, 6};
   if (version == 34) return {8, 14, 19, 23, 22, 0, 3, 9, 4, 7, 6};
@@ -40,7 +41,7 @@ constexpr Columns columns(int version) {
   return {8, 14, 11, 15, 13, 0, kNoColumn, 5, 6, 7, kNoColumn};
 }
 
-/// Reads one .raw or .rawx; each object reads once.
+/// Reader of one .raw or .rawx; each object reads one file.
 class RawReader {
  public:
   /// `name` replaces the file name in messages.
@@ -49,8 +50,8 @@ class RawReader {
   RawReader(const RawReader&) = delete;
   network::Network read();
   RawSurvey survey();
-  /// Returns the number of faults of the file when read as this version, independent of its header. Reading
-  /// stops after more than `most` faults. The reader cannot be used afterwards.
+  /// Returns the number of errors found when the file is read as this version, whatever its header says.
+  /// Reading stops after more than `most` errors. The reader cannot be used afterwards.
   std::size_t faults_as(int version, std::size_t most);
   /// Returns the version used for reading; 0: the header has none.
   [[nodiscard]] int version() const { return version_; }
@@ -70,17 +71,17 @@ class RawReader {
   void header();
   void check_header(const Fields& header, int change, double frequency);
   void check_titles();
-  /// Reads a section. Returns false at the end of the file ('Q' or no more lines); missing lines are a fault
-  /// unless only optional sections are missing.
+  /// Reads a section. Returns false at the end of the file ('Q' or no more lines). A file that ends without
+  /// 'Q' is an error unless only optional sections are missing.
   bool section(const Section& section, bool may_be_missing);
-  /// Returns true if the file has no such section. Some programs write version 34 without switching devices;
-  /// the text of the line after the branches shows it.
+  /// Returns true if the file has no such section. Some programs write version 34 without the section of
+  /// switching devices: the line that ends the branch section then announces the transformers.
   [[nodiscard]] bool left_out(const Section& section) const;
-  /// Returns true if the text of the line that ended a section announces the same section again.
+  /// Returns true if the comment on the line that ended a section announces the same section again.
   [[nodiscard]] bool again(const Section& section) const;
-  /// Returns the next record with a field; lines that begin with '@!' are comments.
+  /// Returns the next record that has fields. Lines that begin with '@!' are comments.
   std::optional<Record> next();
-  /// Steps back by the record that next() returned last.
+  /// Makes next() return `record`, the last one, again.
   void put_back(const Record& record) { at_ = static_cast<std::size_t>(record.line) - 1; }
 
   void system_wide(const Record& record);
@@ -114,16 +115,18 @@ class RawReader {
   }
   void correct_impedances();
 
-  /// Returns the `count` continuation records after `first`; fewer at the end of the section.
+  /// Returns the `count` continuation records after `first`; fewer, with a problem, at the end of the
+  /// section. `what`: name of the equipment in messages.
   std::vector<Record> following(const Record& first, std::size_t count, const char* what);
   void device(const std::string& kind, const std::string& name, const Record& record,
               const std::vector<int>& numbers, const std::vector<double>& scheduled = {});
 
-  /// Returns the index of the bus with this number; otherwise -1, and a problem or a remark.
+  /// As Identities::bus_index().
   int find_bus(int number, const Fields& fields) {
     return identities_.bus_index(index_, number, section_, fields);
   }
-  /// Returns the circuit id of a branch, unique for both orders of its ends (Identities::id).
+  /// Returns the circuit id of a branch (Identities::id). Branches from A to B and from B to A share their
+  /// ids.
   std::optional<std::string> circuit_of(int from, int to, const std::string& circuit, const Fields& fields);
   bool status(int value, const char* name, const Fields& fields);
   double pu(long double mw) const { return static_cast<double>(mw / base_); }
@@ -137,7 +140,7 @@ class RawReader {
   void three_windings(std::span<const Record> rows, const std::array<int, 3>& ends);
   int star_point(const std::string& circuit, Fields& impedances, const std::array<int, 3>& ends,
                  bool in_service);
-  /// Stores a winding's reference to a correction table until the tables are read.
+  /// Stores the reference of a winding to its correction table; the tables are read later.
   void note_table(Fields& winding, std::size_t number, std::size_t branch);
   Complex magnetising(Fields& head, Fields& winding, const Codes& codes, long double mva,
                       const network::Bus& bus);
@@ -151,15 +154,15 @@ class RawReader {
   std::size_t at_ = 0;     ///< next line
   std::string separator_;  ///< line that ended the last section
   int version_ = 0, forced_ = 0;
-  std::size_t most_faults_ = std::numeric_limits<std::size_t>::max();  ///< reading stops after more faults
+  std::size_t most_faults_ = std::numeric_limits<std::size_t>::max();  ///< reading stops after more errors
   Columns columns_{};
   long double base_ = 100.0L;
   network::Network network_;
   Problems problems_;
   std::map<int, int> index_;
   std::vector<int> generator_line_, branch_line_;
-  std::vector<std::string> places_;  ///< places of the generators for messages, if they are not lines
-  bool units_only_ = false;          ///< true: errors that concern only the network are not faults
+  std::vector<std::string> places_;  ///< places of the generators in messages, for a .rawx
+  bool units_only_ = false;          ///< true: errors that concern only the network are not reported
   RawOptions options_;
   Identities identities_{options_, network_, problems_};
   std::string section_;  ///< section being read
@@ -177,8 +180,8 @@ class RawReader {
   std::set<int> stars_;  ///< indices of the star points of three-winding transformers
 };
 
-/// Returns a problem that names the likely version if the file has many faults in the version used and hardly
-/// any in another one.
+/// Returns a problem that names the likely version if the file has at least three errors in the version used
+/// and at most a tenth as many in another version.
 std::optional<Problem> other_version(const std::vector<std::string>& lines, const std::string& name,
                                      const RawOptions& options, int read_as,
                                      const std::vector<Problem>& faults);
