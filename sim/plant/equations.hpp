@@ -60,7 +60,7 @@ class PlantEquations {
   [[nodiscard]] bool nonlinear() const { return machine_.current != nullptr; }
   /// Whether any state has a non-windup limit.
   [[nodiscard]] bool limited() const { return !limits_.empty(); }
-  /// Number of guard functions. Their signs give the side of each jump of the equations.
+  /// Number of guard functions. The sign of each shows the side of a discontinuity of the equations.
   [[nodiscard]] int guards() const { return guards_; }
 
   /// Computes the voltage er + j ei seen from the grid behind r + jx [pu, network frame]. m: scratch()
@@ -103,7 +103,7 @@ class PlantEquations {
     const T n = j[joint_ratio], in = T(1.0) / n;
     s.Ir = s.Ir * n;
     s.Ii = s.Ii * n;
-    // machine's terminal = grid's side / n + zt It, and n^2 zt = (r + jx) - n^2 (rm + j xm)
+    // terminal voltage = grid-side voltage / n + zt It, where n^2 zt = (r + jx) - n^2 (rm + j xm)
     const T rt = j[joint_r] * in * in - j[joint_rm], xt = j[joint_x] * in * in - j[joint_xm];
     s.Vr = s.Vpr * in + rt * s.Ir - xt * s.Ii;
     s.Vi = s.Vpi * in + rt * s.Ii + xt * s.Ir;
@@ -158,7 +158,7 @@ class PlantEquations {
     machine_.derivative(c, x, m, s, dx);
     limit_derivatives(c, x, dx);
   }
-  /// As derivative(), where machine_alone(): only Ir and Ii are needed.
+  /// As derivative(), for a plant with machine_alone(); needs only Ir and Ii.
   void machine_derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     machine_.electrical(c, x, m, s);
     machine_.derivative(c, x, m, s, dx);
@@ -181,7 +181,7 @@ class PlantEquations {
     for (const Control& k : controls_)
       if (k.ops.guard) k.ops.guard(c + k.coefficient, x + k.state, s, g + k.guard);
   }
-  /// Clamps states to limits that they crossed within a step; adds the distance to `moved`.
+  /// Clamps states to limits that they crossed within a step; adds their displacement to `moved`.
   void clamp_states(const T* c, T* x, T& moved) const {
     for (const Limit& l : limits_) {
       const T before = x[l.state];
@@ -190,7 +190,7 @@ class PlantEquations {
       moved = moved + positive_part(x[l.state] - before) + positive_part(before - x[l.state]);
     }
   }
-  /// Computes the power into the grid, behind a transformer that of its grid side.
+  /// Computes the power into the grid, at the grid side of the transformer if there is one.
   void grid_power(const T* c, const Signals<T>& s, T& P, T& Q) const {
     P = s.P;
     Q = s.Q;
@@ -214,7 +214,7 @@ class PlantEquations {
   struct Control {
     ControlOps<T> ops;
     const void* user_model;
-    int state, coefficient, guard;  ///< indices of its first ones
+    int state, coefficient, guard;  ///< indices of its first state, coefficient and guard
   };
   struct Limit {
     int state, low, high;
@@ -264,7 +264,7 @@ class PlantEquations {
     s.Vi = s.Vpi;
   }
   /// Solves for the terminal voltage at which the machine's current equals the transformer's current.
-  /// Newton's method from the Vr, Vi in s; derivatives by differences, whose error only slows convergence.
+  /// Newton's method starts from the Vr, Vi in s; the error of its finite differences only slows convergence.
   /// Sets the current to NaN on failure, as for the machine alone.
   void nonlinear_through_transformer(const T* c, const T* x, T* m, Signals<T>& s, T& ir, T& ii) const {
     constexpr int kLimit = 20;
@@ -304,7 +304,7 @@ class PlantEquations {
     ir = s.Ir * in;
     ii = s.Ii * in;
   }
-  /// Computes P, Q and V from terminal voltage and current, and resets the controls' sums.
+  /// Computes P, Q and V from terminal voltage and current, and resets the signals that controls add to.
   static void terminal(Signals<T>& s) {
     using std::sqrt;
     s.P = s.Vr * s.Ir + s.Vi * s.Ii;

@@ -1,14 +1,15 @@
 #pragma once
-// Equations of one load: its current is a function of the bus voltage and its states. For solvers of sources
-// behind constant impedances, the load is E = V + z I with its impedance z at the operating point. A
-// constant-impedance load has E = 0.
+// Equations of one load: its current is a function of the bus voltage and its states. Solvers that need
+// sources behind constant impedances represent the load by E = V + z I, where z is its impedance at the
+// operating point. A constant-impedance load has E = 0.
 #include <optional>
 
 #include "sim/plant/plant.hpp"
 
 namespace swingbank::sim::plant {
 
-/// The load's own coefficients, after its effect's: impedance at the operating point [pu on Consumer::mva].
+/// Coefficients that follow those of the load's effect: impedance at the operating point [pu on
+/// Consumer::mva].
 enum LoadJoint { load_r, load_x, kLoadJoint };
 
 /// Equations of one dynamic load.

@@ -8,9 +8,9 @@
 namespace swingbank::sim::plant {
 namespace {
 
-/// Returns the source impedance of a load. Any value is exact; that of the operating point makes a constant
-/// impedance E = 0. A load with nearly zero current, such as a compensator in the middle of its range, has no
-/// usable one.
+/// Returns the source impedance of a load. Any value gives exact results; with the impedance at the operating
+/// point, a constant-impedance load has E = 0. A load with nearly zero current, such as a compensator in the
+/// middle of its range, gets 1e3 pu.
 Complex source_impedance(Complex voltage, Complex current) {
   constexpr double largest = 1e3;  // [pu]
   return std::abs(current) * largest > std::abs(voltage) ? -voltage / current : Complex(0.0, largest);
@@ -22,7 +22,7 @@ template <class T>
 OperatingOf<T> load_operating_point(const Consumer& load, const std::vector<T>& parameters, Complex voltage,
                                     double base_mva, const Conventions& conventions,
                                     std::optional<Complex> regulated) {
-  constexpr double tolerance = 1e-9;  // derivatives of order 1 cancel up to rounding, about 1e-14
+  constexpr double tolerance = 1e-9;  // rounding when derivatives of order 1 cancel: about 1e-14
   const LoadEquations<T> equations(load);
   const Effect& effect = *load.block.effect;
   OperatingOf<T> o{};

@@ -1,5 +1,5 @@
 #pragma once
-// Measurement chain between a plant's terminal and a record.
+// Simulation of the measurement chain between a plant's terminal and a record.
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -13,8 +13,8 @@ namespace swingbank::sim::plant {
 
 /// Terminal quantities, uniformly sampled; all vectors have the same length.
 struct TerminalRecord {
-  std::vector<double> V, theta;  ///< [pu], [rad]
-  std::vector<double> P, Q;      ///< out of the plant [pu]
+  std::vector<double> V, theta;  ///< voltage magnitude [pu] and angle [rad]
+  std::vector<double> P, Q;      ///< power out of the plant [pu]
   std::vector<double> df;        ///< frequency deviation [pu]
 };
 
@@ -22,14 +22,14 @@ struct TerminalRecord {
 /// the derivative of theta (central difference). `rate` [1/s]; `frequency`: system frequency [Hz]. Throws
 /// InputError where V = 0, because P and Q do not determine the current there; `where` names the record.
 Phasors phasors_of(const TerminalRecord& record, double rate, double frequency, const std::string& where);
-/// Inverse of phasors_of(). theta is continuous from sample to sample, in the turn of `first_theta` [rad].
+/// Inverse of phasors_of(). theta is unwrapped, and its first value is within pi of `first_theta` [rad].
 TerminalRecord terminal_of(const Phasors& phasors, double first_theta);
 
 /// Applies the instruments of `chain` in order. Block k has its own random numbers, derived from `seed` and
 /// k.
 void measure(std::span<const Block> chain, std::uint64_t seed, Phasors& phasors);
-/// Returns how far V and I after the whole chain depend on those before it, to either side [s]. An instrument
-/// that only delays the frequency (Effect::angle_lag) does not count.
+/// Returns the time span, to either side, over which V and I before the chain affect V and I after it [s]. An
+/// instrument that only delays the frequency (Effect::angle_lag) does not count.
 double memory(std::span<const Block> chain);
 
 /// Reads "EFFECT[:PARAM=VALUE,...]" for the measurement slot, with the effects of `library`. Errors are added

@@ -85,8 +85,8 @@ class Initialiser {
     return ops(p).control.steady(p.effect->user_model.get(), p.p, coefficients(p), o_.s, states(p));
   }
   /// Initialises converter controls backwards from the current: the electrical control determines the
-  /// references of the plant control. A second round passes the torque control's speed reference to the drive
-  /// train, which is earlier in the order.
+  /// references of the plant control. A second pass gives the drive train the speed reference of the torque
+  /// control, which is initialised after the drive train.
   void converter_controls() {
     o_.s.Pneed = o_.s.P;
     o_.s.Qneed = o_.s.Q;
@@ -130,7 +130,7 @@ class Initialiser {
                     p.effect->name, value_of(s.P), value_of(s.Q), value_of(s.V)),
         where(), why, "change the model's parameters or the dispatch");
   }
-  /// Checks that the voltage behind the impedance drives exactly the power flow's current.
+  /// Checks that the voltage behind the impedance produces exactly the current of the power flow.
   void emf() {
     T er, ei;
     const T* j = o_.c.data() + plant_.machine.effect->coefficients;
@@ -196,7 +196,7 @@ class Initialiser {
                         "check the model's parameters");
   }
 
-  static constexpr double kTolerance = 1e-9;  // derivatives of order 1 cancel up to rounding, about 1e-14
+  static constexpr double kTolerance = 1e-9;  // rounding when derivatives of order 1 cancel: about 1e-14
   const Plant& plant_;
   PlantEquations<T> equations_;
   std::vector<Place<T>> places_;

@@ -10,14 +10,14 @@ namespace swingbank::sim::plant {
 /// An ordering of two parameters, by index in a block's effect.
 struct Ordering {
   int greater = 0, smaller = 0;  ///< indices of the two parameters in the effect
-  /// Whether a model may violate it: true for X''d, X''q > Xl. The split of a subtransient reactance at the
-  /// leakage is not observable at the terminal, the equations hold either way, and public cases have machines
-  /// with X''d below Xl.
+  /// Whether a model may violate it: true for X''d, X''q > Xl. The leakage part of a subtransient reactance
+  /// is not observable at the terminal, the equations hold either way, and public cases have machines with
+  /// X''d below Xl.
   bool may_be_meant = false;
 };
 
 /// Returns the orderings that apply to a block's values. A parameter of zero means "none" and has no
-/// ordering. Effect::unphysical returns the same as one sentence.
+/// ordering. Effect::unphysical checks the same orderings.
 std::vector<Ordering> orderings(const Block& block);
 /// Returns the orderings that the values violate.
 std::vector<Ordering> violated(const Block& block);

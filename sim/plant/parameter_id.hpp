@@ -19,7 +19,7 @@ int first_measurement(const Plant& plant);
 /// Returns the number of blocks.
 int block_count(const Plant& plant);
 
-/// Returns the values of every block but the measurements: all parameters of the plant's equations.
+/// Returns the parameter values of every block except the measurements, which the equations do not use.
 std::vector<std::vector<double>> block_parameters(const Plant& plant);
 
 /// Returns the block. Throws std::out_of_range if the plant has no such block.

@@ -14,11 +14,11 @@ struct Block {
   const Effect* effect = nullptr;  ///< effect; null: none
   std::vector<double> p;           ///< parameter values, in the units of the effect's records
 };
-/// Remote measuring point of a plant control in the network (Elsewhere of its effect).
+/// Remote measuring point of a plant control in the network, selected by Effect::elsewhere.
 struct FarPlace {
   int bus = -1;         ///< index of the regulated bus; -1: the plant's grid side
-  int branch = -1;      ///< index of the measured branch; -1: the plant's own
-  bool at_from = true;  ///< measured at this branch's `from` side
+  int branch = -1;      ///< index of the measured branch; -1: the plant's own power and current
+  bool at_from = true;  ///< true: measured at the `from` side of this branch
 };
 /// Two-port between the plant's grid side and the point where its control measures. Voltage and current there
 /// are a V + b I and c V + d I [pu on the machine's base].
@@ -37,7 +37,7 @@ struct Plant {
   std::vector<Block> measurements;  ///< instruments between grid and record
   int generator = -1;               ///< index into Network::generators
   FarPlace far_place;               ///< remote measuring point of its plant control
-  std::optional<TwoPort> beyond;    ///< none: the control measures at the grid side
+  std::optional<TwoPort> beyond;    ///< network up to the measuring point; none: it is the grid side
   /// The remote measurement at the operating point [pu; power and current on `mva`]. Empty if the control
   /// measures at the plant.
   std::optional<Far<double>> far;
@@ -47,7 +47,7 @@ struct Consumer {
   std::string name;     ///< "8" or "8/2": bus number, and id where a bus has several loads
   int bus = -1;         ///< index into Network::buses
   int load = -1;        ///< index into Network::loads
-  int regulated = -1;   ///< index of the bus whose voltage it regulates; -1: its own, or none
+  int regulated = -1;   ///< index of the bus whose voltage it regulates; -1: its own bus, or none
   double mva = 100.0;   ///< base of its parameters
   Complex consumption;  ///< P + jQ at the operating point [pu on the network's base]
   Block block;          ///< effect and parameters of the load
@@ -55,8 +55,8 @@ struct Consumer {
 
 /// Returns the switching times of the plant's effects, sorted [s].
 std::vector<double> switching_times_of(const Plant& plant);
-/// Margin before a segment's end [s]. Effects are evaluated at most at the end less this margin, so that a
-/// jump at the end belongs to the next segment.
+/// Margin before a segment's end [s]. Effects are evaluated no later than this margin before the end, so that
+/// a step at the end belongs to the next segment.
 constexpr double kBeforeSwitching = 1e-9;
 
 /// Initial state of a plant at its operating point. T: double, or a dual where derivatives are needed.
@@ -70,9 +70,10 @@ struct OperatingOf {
 /// Operating point in double precision.
 using Operating = OperatingOf<double>;
 
-/// Initialises one plant exactly (saturation included) from the voltage at its bus [pu] and generation [pu on
-/// base_mva]: machine first, then controls in order of Slot. Throws InputError if an effect has no steady
-/// state there, a state lies outside its limits or a derivative exceeds 1e-9.
+/// Initialises one plant exactly, including saturation, from the voltage at its bus [pu] and its generation
+/// [pu on base_mva]. The machine is first, then the controls in order of Slot (of a converter: in reverse).
+/// Throws InputError if an effect has no steady state, a state is outside its limits or a derivative exceeds
+/// 1e-9.
 Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
                           const Conventions& conventions);
 /// As operating_point(), with the values of every block given as T, in the order of block_parameters().

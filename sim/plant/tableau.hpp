@@ -7,7 +7,7 @@
 
 namespace swingbank::sim::plant::dp54 {
 
-constexpr int kStages = 7;  ///< number of stages; the last one is the first of the next step
+constexpr int kStages = 7;  ///< number of stages; the last stage is the first of the next step
 /// Coefficients of the stages; the last row holds the fifth-order weights.
 constexpr double a[7][6] = {{},
                             {1.0 / 5},
@@ -27,18 +27,19 @@ constexpr double dense[7] = {-12715105075.0 / 11282082432.0,  0.0,
                              701980252875.0 / 199316789632.0, -1453857185.0 / 822651844.0,
                              69997945.0 / 29380423.0};
 
-/// Two third divided differences of the stages' derivatives, at c = 0, 0.3, 0.8, 1 and at 0.3, 0.8, 8/9, 1.
-/// They detect a kink inside a step, which `error` nearly misses. A jump J of the derivative's slope at 0.3 <
-/// theta < 0.8 gives at most 0.0011 J h^2 in `error` (none at 0.42), while the step's true error is up to
-/// 0.02 J h^2. One of the two differences, times h, is at least 0.6 J h^2 for 0.2 < theta < 0.9.
+/// Time of the fifth stage, as a fraction of the step.
 constexpr double c5 = 8.0 / 9;
-/// Weights of the stages' derivatives in the two differences.
+/// Weights of two third divided differences of the stages' derivatives, at c = 0, 0.3, 0.8, 1 and at 0.3,
+/// 0.8, 8/9, 1. They detect a kink inside a step of length h, which `error` nearly misses. Let y'' jump by J
+/// at the fraction theta of the step. For 0.3 < theta < 0.8, `error` is then at most 0.0011 J h^2 (zero at
+/// theta = 0.42), but the true error is up to 0.02 J h^2. For 0.2 < theta < 0.9, one of the two differences,
+/// times h, is at least 0.6 J h^2.
 constexpr double kink[2][7] = {
     {-1.0 / (0.3 * 0.8), 0.0, 1.0 / (0.3 * 0.5 * 0.7), -1.0 / (0.8 * 0.5 * 0.2), 0.0, 0.0, 1.0 / (0.7 * 0.2)},
     {0.0, 0.0, -1.0 / (0.5 * (c5 - 0.3) * 0.7), 1.0 / (0.5 * (c5 - 0.8) * 0.2),
      -1.0 / ((c5 - 0.3) * (c5 - 0.8) * (1.0 - c5)), 0.0, 1.0 / (0.7 * 0.2 * (1.0 - c5))}};
 
-/// Returns x^p for the step controller only: relative error below 6 %, bitwise equal on every machine.
+/// Returns x^p with a relative error below 6 %, bitwise equal on every machine. Only for the step controller.
 inline float rough_power(float x, float p) {
   const float log2 = static_cast<float>(std::bit_cast<std::int32_t>(x)) * 1.1920929e-7F - 126.94269504F;
   return std::bit_cast<float>(static_cast<std::int32_t>((log2 * p + 126.94269504F) * 8388608.0F));

@@ -8,7 +8,7 @@
 namespace swingbank::sim::plant {
 
 /// Returns the indices of values outside [low, high] of their records. Values 99, 999, ... mean "none" and do
-/// not count. Such a block is simulated and fitted as any other, with a warning. Only Effect::check refuses
+/// not count. A block with unusual values is simulated and fitted, with a warning. Only Effect::check refuses
 /// values.
 std::vector<int> unusual(const Block& block);
 /// Returns "VMIN = -1.5 pu".
