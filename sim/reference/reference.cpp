@@ -13,9 +13,9 @@
 namespace swingbank::sim::reference {
 namespace {
 
-constexpr double kSameTime = 1e-9;  ///< largest distance of a sample from its switching time [s]
+constexpr double kSameTime = 1e-9;  ///< times that differ by less are equal [s]
 
-constexpr double kNoAngle = 1e-9;  ///< voltage without a defined angle, for rounding near a bolted fault [pu]
+constexpr double kNoAngle = 1e-9;  ///< at lower voltages the angle is undefined, only rounding [pu]
 
 struct FreeContext {
   void operator()(SUNContext c) const { SUNContext_Free(&c); }
@@ -134,7 +134,7 @@ class Recorder {
       }
     }
   }
-  /// Extreme units of an island in a quantity.
+  /// Lowest and highest value of a quantity in an island, and the units that have them.
   struct Ends {
     double low = 1e300, high = -1e300;
     std::size_t lowest = 0, highest = 0;
@@ -173,9 +173,9 @@ class Recorder {
   const ReferencePlants& plants_;
   const ReferenceOptions& options_;
   ReferenceRun& run_;
-  std::vector<double> angle_;             ///< per bus, last value while V = 0 [rad]
-  std::vector<Signals<double>> signals_;  ///< per unit, of the sample
-  std::vector<Complex> current_;          ///< likewise, into the grid
+  std::vector<double> angle_;             ///< of each bus [rad]; the last value while V = 0
+  std::vector<Signals<double>> signals_;  ///< of each unit, at the present sample
+  std::vector<Complex> current_;          ///< of each unit, into the grid
 };
 
 void operating_values(const grid::Grid& grid, const ReferencePlants& plants, double* y) {
@@ -187,8 +187,9 @@ void operating_values(const grid::Grid& grid, const ReferencePlants& plants, dou
   }
 }
 
-/// Handles the points where IDA fails because the converters' voltage solution ends and the voltages jump.
-/// Returns true with y after the jump at the new time t, false if there is no jump.
+/// Crosses a time at which IDA fails because the voltage solution with converters ceases to exist, and the
+/// voltages jump to another solution. Returns true, with the new time in t and the values after the jump in
+/// y; false if there is no jump.
 bool cross_voltage_step(const ReferenceSystem& system, double& t, double* y, const double* yp) {
   constexpr double kOtherVoltage = 1e-3;     // [pu]
   constexpr double kLongestCrossing = 1e-4;  // [s], the states advance by their derivatives meanwhile
@@ -232,7 +233,7 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
   SeenEntries seen;
 
   int k = 0;
-  // The left limit at t = 0 is the operating point, even if the event starts there.
+  // The value before t = 0 is the operating point, even if the event starts at t = 0.
   if (!options.after_switching ||
       (parts.front().topology == network::Topology{} && parts.front().setpoints.empty())) {
     if (!recorder.record(k++, ReferenceSystem(grid, plants, {}, options.t_end), values)) return run;
@@ -262,7 +263,7 @@ ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
       solver = solver_from(at);
       return at >= to || solver->advance(to);
     };
-    // A sample at the end of the segment is this segment's left limit or the next one's first value.
+    // With after_switching, a sample at the end of the segment belongs to the next segment.
     const double until = last || !options.after_switching ? end + kSameTime : end - kSameTime;
     while (k < run.samples && time() < until) {
       if (!advance(std::min(time(), end))) {

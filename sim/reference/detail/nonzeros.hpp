@@ -1,18 +1,18 @@
 #pragma once
 // Sparsity pattern of a segment's Jacobian: entries that have been nonzero in the run. A unit's block is
-// dense in the full pattern, and most of its entries are always zero. Units of the same effects share their
+// dense in the full pattern, but most of its entries are always zero. Units with the same effects share their
 // pattern.
 #include "sim/reference/detail/system.hpp"
 
 namespace swingbank::sim::reference {
 
-/// Per kind of unit (ReferencePlants::Unit::kind): 1 for each entry of its block, column by column, that was
-/// nonzero.
+/// For each kind of unit (ReferencePlants::Unit::kind): 1 for each entry of its block, column by column, that
+/// was nonzero.
 using SeenEntries = std::vector<std::vector<char>>;
 
 class Nonzeros {
  public:
-  /// seen: pattern of the run, updated.
+  /// `seen`: entries that were nonzero in the run; take() updates it.
   Nonzeros(const ReferenceSystem& system, SeenEntries& seen);
   /// Adds the nonzero entries of `values`, given in the order of the system's pattern. Returns true if the
   /// pattern changed. Entries are never removed.
@@ -33,7 +33,7 @@ class Nonzeros {
   const ReferenceSystem& system_;
   const Eigen::SparseMatrix<double>& full_pattern_;
   SeenEntries& seen_;
-  std::vector<char> taken_;  ///< per entry of the full pattern
+  std::vector<char> taken_;  ///< for each entry of the full pattern: 1 if it is in this pattern
   std::vector<int> kept_;    ///< positions in the full pattern, ascending
   std::vector<int> outer_;
 };

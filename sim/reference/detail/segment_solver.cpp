@@ -18,31 +18,31 @@ void require(int flag, const char* call) {
     throw std::runtime_error(std::string(call) + " failed with SUNDIALS code " + std::to_string(flag));
 }
 
-/// A named namespace, because SegmentSolver::Parts holds its types and files of a module may be compiled as
-/// one unit.
+/// Callbacks of IDA and their data. The namespace has a name because SegmentSolver::Parts has members of its
+/// types, and all files of a module may be compiled as one unit.
 namespace segments {
 
-constexpr int kMinimumDegree = 0;  ///< KLU ordering; less fill than its default here
-/// Relative change of the leading coefficient that triggers a new factorisation. IDA's 0.25 is for expensive
-/// matrices. Here a factorisation costs as much as two residuals, and Newton's method leaves smaller
-/// residuals.
+constexpr int kMinimumDegree = 0;  ///< KLU's minimum-degree ordering; less fill-in than its default here
+/// Relative change of the leading coefficient a (system.hpp) that triggers a new factorisation. IDA's 0.25 is
+/// for expensive matrices. Here a factorisation costs as much as two residuals, and Newton's method then ends
+/// with smaller residuals.
 constexpr double kFactorAnew = 0.1;
-/// Number of steps after which the units' derivatives are recomputed, as in CVODE. Earlier only after a
-/// failed step, which may have crossed a limit.
+/// Number of steps after which the units' derivatives are recomputed, as in CVODE. They are recomputed
+/// earlier after a failed step, which may have crossed a limit, or if Newton's method does not converge.
 constexpr long kStepsPerJacobian = 20;
 
 /// User data of the callbacks below.
 struct Problem {
   const ReferenceSystem& system;
   const ReferenceOptions& options;
-  std::vector<double> weight;  ///< error weight per unknown
+  std::vector<double> weight;  ///< error weight of each unknown
   Nonzeros nonzeros;
-  std::vector<double> values;  ///< of the Jacobian, full pattern
-  std::vector<int> own;        ///< positions of the states' diagonal in the full pattern
+  std::vector<double> values;  ///< values of the Jacobian, in the full pattern
+  std::vector<int> own;        ///< positions of the states' diagonal entries in the full pattern
   SUNLinearSolver solver = nullptr;
   void* ida = nullptr;
-  double a = 0.0;                                 ///< leading coefficient of `values`
-  long steps = -kStepsPerJacobian, failures = 0;  ///< when the derivatives were computed
+  double a = 0.0;                                 ///< leading coefficient with which `values` was computed
+  long steps = -kStepsPerJacobian, failures = 0;  ///< IDA's counts when the derivatives were last computed
 
   /// Whether the units' derivatives must be recomputed when IDA requests a matrix with leading coefficient
   /// `now`. IDA requests one with an unchanged coefficient if Newton's method has not converged.
@@ -65,7 +65,7 @@ int residual(realtype t, N_Vector y, N_Vector yp, N_Vector f, void* user) {
   const auto& system = static_cast<const Problem*>(user)->system;
   system.residual(t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp), N_VGetArrayPointer(f));
   const double* value = N_VGetArrayPointer(f);
-  // 1 asks IDA for a smaller step instead of continuing with a value that is not finite.
+  // The return value 1 asks IDA for a smaller step, because a value is not finite.
   return std::all_of(value, value + system.size(), [](double v) { return std::isfinite(v); }) ? 0 : 1;
 }
 
@@ -86,8 +86,8 @@ int jacobian(realtype t, realtype a, N_Vector y, N_Vector, N_Vector, SUNMatrix j
   return 0;
 }
 
-/// Replaces IDA's clearing of the matrix with its pattern: this matrix is overwritten completely and keeps
-/// its pattern.
+/// Replaces the operation by which IDA clears a matrix with its pattern. This matrix keeps its pattern, and
+/// all its values are overwritten.
 int keep(SUNMatrix) { return 0; }
 
 /// Error weights for the norm of the largest weighted error (detail/vector.hpp). The tolerance applies to
@@ -101,7 +101,7 @@ int error_weights(N_Vector y, N_Vector weights, void* user) {
   return 0;
 }
 
-void quiet(int, const char*, const char*, char*, void*) {}  // failures are return values
+void quiet(int, const char*, const char*, char*, void*) {}  // no output: failures are return values
 
 struct FreeMatrix {
   void operator()(SUNMatrix m) const { SUNMatDestroy(m); }

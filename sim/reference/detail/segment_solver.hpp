@@ -1,5 +1,6 @@
 #pragma once
-// SUNDIALS IDA with KLU on one segment, from consistent values at its start exactly to its end.
+// Integration of one segment by SUNDIALS IDA with KLU, from consistent values at its start exactly to its
+// end.
 #include <memory>
 #include <vector>
 
@@ -14,13 +15,13 @@ void require(int flag, const char* call);
 
 class SegmentSolver {
  public:
-  /// y, yp: consistent at `start` [s]; `seen`: pattern of the run.
+  /// y, yp: consistent values at `start` [s]; `seen`: entries of the Jacobian that were nonzero in the run.
   SegmentSolver(SUNContext context, const ReferenceSystem& system, N_Vector y, N_Vector yp, double start,
                 double end, const ReferenceOptions& options, SeenEntries& seen);
   ~SegmentSolver();
   SegmentSolver(const SegmentSolver&) = delete;
   SegmentSolver& operator=(const SegmentSolver&) = delete;
-  /// Advances y and y' to time t [s]. Returns false if IDA fails; y and y' are then those at `reached`.
+  /// Advances y and y' to time t [s]. Returns false if IDA fails; y and y' are then those at reached().
   bool advance(double t);
   [[nodiscard]] double reached() const { return reached_; }  ///< [s]
   [[nodiscard]] long steps() const;

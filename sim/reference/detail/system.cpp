@@ -15,7 +15,7 @@
 namespace swingbank::sim::reference {
 namespace {
 
-/// One regulated bus and both ends of a branch.
+/// Maximum number of remote buses of a unit: one regulated bus and both ends of a branch.
 constexpr std::size_t kMostSeen = 3;
 
 int delta_state(const Effect& machine) {
@@ -24,8 +24,8 @@ int delta_state(const Effect& machine) {
   return -1;
 }
 
-/// Returns buses with generators in islands without a voltage source (machine or fault); their equations have
-/// no solution. A converter follows a voltage and does not set one.
+/// Returns the buses of islands that have converters but neither machine nor fault; their equations have no
+/// solution. A converter follows a voltage and does not set one.
 std::vector<int> cut_off(const grid::Grid& grid, const network::Topology& topology) {
   const std::vector<int> island = network::islands(grid.network, topology.open);
   std::vector<bool> has_source(island.size() + 1, false);
@@ -296,7 +296,7 @@ Signals<double> ReferenceSystem::signals(std::size_t u, double t, const double* 
 
 bool ReferenceSystem::newton(double t, double* y) const {
   constexpr int limit = 50;
-  constexpr double tolerance = 1e-12;  // [pu of voltage], above the rounding with faults and lines
+  constexpr double tolerance = 1e-12;  // [pu of voltage], above the rounding error
   std::vector<double> yp(size(), 0.0), f(size());
   Eigen::SparseMatrix<double> j = constant_;
   for (int iteration = 0; iteration < limit; ++iteration) {
@@ -309,7 +309,7 @@ bool ReferenceSystem::newton(double t, double* y) const {
     if (lu.info() != Eigen::Success) return false;
     const Eigen::Map<const Eigen::VectorXd> rest(f.data() + plants_.states(), 2 * buses_);
     Eigen::VectorXd step = lu.solve(rest);
-    step += lu.solve(rest - jv * step).eval();  // refinement: a fault of 1e-6 pu stretches the scale
+    step += lu.solve(rest - jv * step).eval();  // refinement: a fault of 1e-6 pu worsens the condition
     double largest = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(largest)) return false;
     if (largest > 1.0) step *= 1.0 / largest;  // a constant-power load may make the first steps very long
@@ -370,9 +370,9 @@ void ReferenceSystem::residual(double t, const double* y, const double* yp, doub
   }
 }
 
-/// Adds the current of a tie to the sums of its buses. It is the difference of two nearly equal voltages
-/// divided by a small impedance. Its rounding error enters both sums with opposite signs and therefore no
-/// voltage.
+/// Adds the current of a tie, a branch of very small impedance, to the sums of its buses. The current is the
+/// difference of two nearly equal voltages divided by this impedance. Its rounding error enters both sums
+/// with opposite signs and therefore does not affect the voltages.
 void ReferenceSystem::tie_current(const network::Tie& tie, const double* y, double* f) const {
   const double *from = y + bus_row(tie.from), *to = y + bus_row(tie.to);
   const Complex into = (Complex(from[0], from[1]) / tie.ratio - Complex(to[0], to[1])) / tie.z;

@@ -23,8 +23,8 @@ namespace swingbank::sim::reference {
 class ReferencePlants {
  public:
   struct Unit {
-    const plant::Plant* plant = nullptr;  ///< or
-    const plant::Consumer* load = nullptr;
+    const plant::Plant* plant = nullptr;    ///< the plant; null: the unit is a load
+    const plant::Consumer* load = nullptr;  ///< the load; null: the unit is a plant
     plant::Operating operating;
     std::vector<D8> coefficients;
     std::optional<plant::PlantEquations<double>> equations;
@@ -32,20 +32,20 @@ class ReferencePlants {
     std::optional<plant::LoadEquations<double>> consumption;
     std::optional<plant::LoadEquations<D8>> consumption_sensitivities;
     int bus;
-    /// Remote buses with voltages that it needs: the regulated bus, then both ends of the measured branch.
+    /// Remote buses whose voltages it needs: the regulated bus, then both ends of the measured branch.
     std::vector<int> seen;
-    network::BranchEnd flow{};  ///< of the measured branch, whose ends are the last two of `seen`
-    int kind;                   ///< equal for units of the same effects
+    network::BranchEnd flow{};  ///< measured end of the branch, whose buses are the last two of `seen`
+    int kind;                   ///< equal for units with the same effects
     int first, states;          ///< index of its first state; number of states
     int delta;                  ///< index of its rotor angle in its own states, -1 if none
-    double scale;               ///< own base / network base
+    double scale;               ///< MVA base of the unit divided by that of the network
     /// Returns the number of unknowns of its block: states, Vr, Vi, and those of the remote buses.
     [[nodiscard]] int members() const { return states + 2 + 2 * static_cast<int>(seen.size()); }
   };
   explicit ReferencePlants(const grid::Grid& grid);
   [[nodiscard]] const std::vector<Unit>& units() const { return units_; }  ///< plants, then loads
   [[nodiscard]] int states() const { return states_; }
-  /// Further switching times: jumps of the plants' effects [s].
+  /// Further switching times: steps of the plants' effects [s].
   [[nodiscard]] const std::vector<double>& switching_times() const { return switching_times_; }
 
  private:
@@ -72,17 +72,17 @@ class ReferenceSystem {
   [[nodiscard]] double connected(std::size_t unit) const { return connected_[unit]; }
 
   /// Solves the algebraic equations for the bus voltages by Newton's method, with the states and start
-  /// voltages in y. If that fails, repeats from zero voltage: beside a fault, a given current has only such
-  /// solutions (decision 37). Returns false if there is no solution.
+  /// voltages in y. If that fails, restarts from 0 and then from 1 pu, because a converter near a fault may
+  /// have several voltage solutions (decision 37). Returns false if no start succeeds.
   bool search_voltages(double t, double* y) const;
-  /// As search_voltages(), but throws InputError if there is no solution.
+  /// As search_voltages(), but throws InputError if no solution is found.
   void solve_voltages(double t, double* y) const;
   /// Computes y' of the states; zero for the voltages.
   void derivatives(double t, const double* y, double* yp) const;
   void residual(double t, const double* y, const double* yp, double* f) const;
-  /// Returns the weight of each unknown's error in step control. States of stabilisers and exciters precede
-  /// gains from some ten to several thousand, and limits that turn a delayed state into a lasting error of
-  /// Efd. States of machines follow an Efd that such a limit changes abruptly.
+  /// Returns the weight of each unknown's error in step control. States of stabilisers and exciters are
+  /// multiplied by gains of ten to several thousand, and a small error of them at a limit can become a
+  /// lasting error of Efd. States of machines follow an Efd that such a limit changes abruptly.
   [[nodiscard]] std::vector<double> error_weights() const;
   /// Clamps states to limits that they crossed. Returns true if any changed.
   bool clamp_states(double* y) const;
@@ -91,11 +91,11 @@ class ReferenceSystem {
   Signals<double> signals(std::size_t unit, double t, const double* y, Complex& current,
                           double* dx = nullptr) const;
 
-  /// Jacobian in compressed columns with the pattern of `pattern()`; values are in its order.
+  /// Returns the Jacobian's pattern in compressed columns; jacobian() writes `values` in its order.
   [[nodiscard]] const Eigen::SparseMatrix<double>& pattern() const { return constant_; }
   void jacobian(double t, double a, const double* y, double* values) const;
-  /// Returns the position in the pattern of each entry of a unit's block, column by column (states, Vr, Vi,
-  /// those of the remote buses); -1: none.
+  /// Returns the position in the pattern of each entry of a unit's block, column by column; -1: none. Rows
+  /// and columns are the unit's states, Vr, Vi, and Vr, Vi of the remote buses.
   [[nodiscard]] const std::vector<int>& places(std::size_t unit) const { return places_[unit]; }
 
  private:
@@ -129,12 +129,12 @@ class ReferenceSystem {
   double last_moment_;  ///< latest time that effects may use [s]
   std::vector<bool> bolted_;
   std::vector<int> open_;                    ///< branches without current, sorted
-  std::vector<int> island_;                  ///< per bus
-  std::vector<double> connected_;            ///< per unit: connected part
-  std::vector<network::Setpoint> setpoint_;  ///< per unit
+  std::vector<int> island_;                  ///< island of each bus
+  std::vector<double> connected_;            ///< connected part of each unit, 0 to 1
+  std::vector<network::Setpoint> setpoint_;  ///< set-point changes of each unit
   Rows y_;                                   ///< network without ties; rows of bolted buses are empty
   std::vector<network::Tie> ties_;
-  Eigen::SparseMatrix<double> constant_;  ///< dF/dy of the network, with entries for the units
+  Eigen::SparseMatrix<double> constant_;  ///< dF/dy of the network, with zero entries for the units
   std::vector<std::vector<int>> places_;  ///< [unit]: position of each (column, row) of its block, -1: none
   mutable Scratch<double> scratch_;       ///< a system is used by one thread
   mutable Scratch<D8> dual_scratch_;

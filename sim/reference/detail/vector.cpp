@@ -32,12 +32,12 @@ void scale(realtype a, N_Vector x, N_Vector z) {
 
 void fill(realtype a, N_Vector z) { std::fill_n(data(z), length(z), a); }
 
-/// Adds several terms at a time, so that the sum is written once for all of them.
+/// Adds four terms at a time, so that the sum is written once for them.
 int linear_combination(int terms, realtype* factors, N_Vector* vectors, N_Vector z) {
   double* pz = data(z);
   const sunindextype n = length(z);
   constexpr int kTerms = 4;
-  // The result may be the first vector, but no other.
+  // z may be the first vector, but no other.
   if (terms == 1) {
     scale(factors[0], vectors[0], z);
     return 0;
