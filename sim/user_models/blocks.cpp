@@ -1,5 +1,5 @@
-// Reader of a user-defined model file's blocks: each becomes states and an output value, with the arithmetic
-// of blocks.hpp.
+// Reader of the blocks of a user-defined model: each becomes states and an output value, with the formulas of
+// sim/core/blocks.hpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -82,8 +82,8 @@ int Reader::limited(const std::string& name, int vertex) {
   return graph_.make(Act::clamp, vertex, value(low, -far), value(high, far));
 }
 
-/// Returns the output of a block. Resolves only direct inputs of the output, so that a loop through a lag or
-/// an integrator is allowed.
+/// Returns the output of a block. Resolves only inputs on which the output depends without a state, so that a
+/// loop through a lag or an integrator is allowed.
 int Reader::block_output(const std::string& name) {
   Block& block = blocks_.at(name);
   const std::string key = "blocks." + name + ".";
@@ -154,8 +154,8 @@ std::vector<int> Reader::list(const std::string& key) {
   return vertices;
 }
 
-/// Adds the states of b(s)/a(s), with coefficients in ascending powers of s, in observer form:
-///   y = z_n + d u,  dz_1 = b_0 u - a_0 y,  dz_i = z_(i-1) + b_(i-1) u - a_(i-1) y,  all over a_n;  d = b_n
+/// Adds the states of b(s)/a(s) in observer form. Coefficients, by ascending powers of s, are divided by a_n:
+///   y = z_n + b_n u,  dz_1 = b_0 u - a_0 y,  dz_i = z_(i-1) + b_(i-1) u - a_(i-1) y
 void Reader::transfer_function_states(const std::string& name, Block& block) {
   const std::string key = "blocks." + name + ".";
   constexpr std::size_t kHighest = 10;

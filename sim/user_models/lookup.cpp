@@ -1,4 +1,4 @@
-// Resolution of a user-defined model file's expressions: their positions in the file and the meaning of their
+// Resolution of the expressions of a user-defined model: their positions in the file and the meaning of their
 // names.
 #include <fmt/format.h>
 
@@ -37,8 +37,8 @@ void Reader::problem(const std::string& key, std::size_t offset, std::string wha
   problems_.add(fmt::format("{} in {}", what, key), place(key, offset), std::move(why), std::move(remedy));
 }
 
-/// Parses the text at `key`, or a number as its text. Returns none and adds a problem if it is missing or
-/// faulty.
+/// Parses the expression at `key`, which may be a number. Returns none and adds a problem if it is missing or
+/// invalid.
 std::optional<Expression> Reader::expression(const std::string& key, bool condition) {
   constexpr std::size_t kLongestText = 10000;
   Expression e{key, {}, nullptr};
@@ -78,7 +78,7 @@ int Reader::value(const std::string& key, std::optional<double> otherwise) {
 }
 
 namespace {
-/// Operations of an expression that are one vertex with the same operands.
+/// Operations of an expression that become one vertex with the same operands.
 constexpr std::pair<Op, Act> kSameAct[] = {{Op::add, Act::add},
                                            {Op::subtract, Act::subtract},
                                            {Op::multiply, Act::multiply},

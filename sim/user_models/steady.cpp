@@ -1,6 +1,6 @@
 // Steady state of a user-defined model: states and unknown references for which all derivatives vanish and
-// the output has its prescribed value. Newton's method with a Jacobian from dual numbers; the first step
-// solves a linear user-defined model. Undetermined unknowns keep their initial values (minimum-norm step).
+// the output has its prescribed value. Newton's method uses a Jacobian from dual numbers and needs one step
+// for a linear model. Its minimum-norm steps leave undetermined unknowns at their initial values.
 #include <fmt/format.h>
 
 #include <Eigen/QR>
@@ -20,7 +20,8 @@ namespace {
 using Eigen::Index;
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
-constexpr double kTolerance = 1e-9;  ///< as in operating_point: derivatives of order 1 cancel to about 1e-14
+constexpr double kTolerance =
+    1e-9;  ///< as in operating_point; rounding of cancelling derivatives: about 1e-14
 
 class Search {
  public:
@@ -43,7 +44,8 @@ class Search {
     return verdict();
   }
 
-  /// Returns the derivatives of the unknowns for the derivative `by` of the residual, with opposite sign.
+  /// Returns J^-1 `by`: the negative derivatives of the unknowns, where `by` is the derivative of the
+  /// residual.
   [[nodiscard]] Vector follow(const Vector& by) { return solve(by); }
   template <class T>
   static std::vector<T> residual_of(const Definition& user_model, const T* c, const T* x,
@@ -139,8 +141,8 @@ class Search {
     return (state.low >= 0 && x_[i] <= c_[state.low] && dx < 0.0) ||
            (state.high >= 0 && x_[i] >= c_[state.high] && dx > 0.0);
   }
-  /// Returns the reason if the result is no steady state with active limits, or "". The caller reports states
-  /// outside their limits.
+  /// Returns the reason if the result, with its limits active, is no steady state; else "". Also returns ""
+  /// for a state outside its limits, which the caller reports.
   [[nodiscard]] std::string verdict() const {
     for (std::size_t i = 0; i < user_model_.states.size(); ++i) {
       const State& state = user_model_.states[i];
@@ -179,7 +181,7 @@ class Search {
   Index states_, unknowns_ = 0, rows_ = 0;
 };
 
-/// Writes the output of a user-defined model without a prescribed value, for later controls.
+/// Writes the output for later controls, if the operating point does not prescribe it.
 template <class T>
 void put_out(const Definition& user_model, const T* c, const T* x, Signals<T>& s) {
   if (user_model.must_meet()) return;
@@ -202,7 +204,7 @@ std::string steady(const Definition& user_model, const double* p, double* c, Sig
   return why;
 }
 
-/// Computes values as for doubles and derivatives by the implicit function theorem.
+/// Computes the values in double precision, and the derivatives by the implicit function theorem.
 std::string steady(const Definition& user_model, const D8* p, D8* c, Signals<D8>& s, D8* x) {
   const std::size_t states = user_model.states.size();
   std::vector<double> pd, cd(static_cast<std::size_t>(user_model.code.coefficients), 0.0), xd(states);

@@ -22,7 +22,7 @@ void evaluate(const void* data, const T* c, const T* x, Signals<T>& s, T* dx) {
   out = user_model.replaces ? value : out + value;
 }
 
-/// Returns one lane of a packed scalar.
+/// Returns element `lane` of a SIMD batch.
 template <int N>
 double lane_of(const Pack<N>& v, int lane) {
   return v[lane];
@@ -44,7 +44,7 @@ void set_lane(Dual<Pack<N>, D>& v, int lane, const Dual<double, D>& one) {
   for (std::size_t k = 0; k < D; ++k) v.d[k].set(lane, one.d[k]);
 }
 template <class T>
-constexpr int kLanesOf = 0;  ///< number of lanes; 0: not packed
+constexpr int kLanesOf = 0;  ///< number of elements of a SIMD batch; 0: T is a single value
 template <int N>
 constexpr int kLanesOf<Pack<N>> = N;
 template <int N, int D>
@@ -55,7 +55,7 @@ std::string steady_of(const void* data, const T* p, T* c, Signals<T>& s, T* x) {
   const Definition& user_model = of(data);
   if constexpr (kLanesOf<T> == 0) {
     return steady(user_model, p, c, s, x);
-  } else {  // lane by lane
+  } else {  // for each element of the batch
     using One = decltype(lane_of(*p, 0));
     for (int lane = 0; lane < kLanesOf<T>; ++lane) {
       std::vector<One> one_p, one_c(static_cast<std::size_t>(user_model.code.coefficients), One(0.0)),
@@ -92,7 +92,7 @@ std::tuple<Ops<T>...> all_ops(std::tuple<T...>*) {
 
 std::vector<double> coefficients(const Definition& user_model, const double* p) {
   std::vector<double> c(static_cast<std::size_t>(user_model.code.coefficients), 0.0);
-  c[kFrequency] = 60.0;  // arbitrary: the checks must not depend on the frequency
+  c[kFrequency] = 60.0;  // any value: the checks must not depend on the frequency
   fill<double>(user_model, p, nullptr, c.data());
   return c;
 }

@@ -12,13 +12,13 @@
 namespace swingbank::sim::user_models {
 
 /// Reads a user-defined model and adds it to a library. Reading the same text again returns the same effect.
-/// Throws InputError with every fault of the file (file:line:column), or if another effect of the library has
+/// Throws InputError with every error of the file (file:line:column), or if another effect of the library has
 /// the name.
 const Effect& load_user_model(const std::filesystem::path& file, library::EffectLibrary& library);
-/// The same from a text; `name` replaces the file name in messages.
+/// The same for a string; `name` replaces the file name in messages.
 const Effect& load_user_model(const std::string& text, const std::filesystem::path& name,
                               library::EffectLibrary& library);
-/// The same without adding it.
+/// Returns the effect of a user-defined model without adding it to a library; `name`: file name in messages.
 Effect make_user_model(const std::string& text, const std::filesystem::path& name);
 
 /// Returns true if two effects are the same compiled effect, or user-defined models with the same text in any

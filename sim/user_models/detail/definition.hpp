@@ -22,7 +22,7 @@ struct Requirement {
 
 /// Metadata and program of a user-defined model.
 struct Definition {
-  std::string text;  ///< unmodified text of the file
+  std::string text;  ///< unmodified content of the file
   std::string name, title, source, description;
   std::deque<std::string> texts;  ///< storage behind the string_views of parameters and states
   std::vector<Parameter> parameters;
@@ -30,7 +30,7 @@ struct Definition {
   Slot slot = Slot::shaft;
   int output = -1;  ///< index into kSignals
   bool replaces = false;
-  std::vector<std::pair<int, int>> operating;  ///< coefficient, and the signal whose initial value it holds
+  std::vector<std::pair<int, int>> operating;  ///< coefficient and the signal whose initial value it contains
   std::vector<int> searched;                   ///< coefficients that steady() solves for
   std::vector<int> start;                      ///< per state: coefficient with the initial guess
   std::vector<Requirement> requirements;       ///< both sides are coefficients
@@ -39,15 +39,15 @@ struct Definition {
       finite;  ///< coefficients that depend on parameters only, with their text; they must be finite
   Compiled code;
 
-  /// Returns true if the operating point prescribes the output. It is the machine's Efd or Tm, and zero for
-  /// dVref, dPref and a user-defined model that adds to Efd or Tm.
+  /// Returns true if the operating point prescribes the output. The prescribed value is the machine's Efd or
+  /// Tm; it is zero for dVref, dPref and a model that adds to Efd or Tm.
   [[nodiscard]] bool must_meet() const;
   [[nodiscard]] std::string_view output_name() const {
     return kSignals[static_cast<std::size_t>(output)].name;
   }
 };
 
-/// Reads a user-defined model file. Throws InputError with all its faults.
+/// Reads a user-defined model. Throws InputError with all errors of the file.
 Definition read_definition(const std::string& text, const std::filesystem::path& name);
 /// Returns the effect that runs the definition.
 Effect make_effect(Definition definition);

@@ -1,5 +1,5 @@
 #pragma once
-// Expressions of a user-defined model file: grammar and syntax tree.
+// Expressions of a user-defined model: grammar and syntax tree.
 //   precedence, lowest first:  < > <= >=   + -   * /   unary -   ^ (whole exponent 0 ... 16)
 //   functions:                 min max abs sqrt exp log sin cos clamp deadband select
 // A comparison may occur only as the first argument of select, or as a whole condition.
@@ -38,11 +38,11 @@ enum class Op : std::uint8_t {
 
 struct Node;
 using Tree = std::shared_ptr<const Node>;
-/// Node of the syntax tree; the fields used depend on `op`.
+/// Node of the syntax tree; `op` determines which fields are used.
 struct Node {
   Op op;
-  double value = 0.0;  ///< number, power
-  std::string name;    ///< name
+  double value = 0.0;  ///< value of a number, or exponent of a power
+  std::string name;    ///< identifier of a name
   std::vector<Tree> arguments;
   std::size_t at = 0;  ///< offset in the text
 };

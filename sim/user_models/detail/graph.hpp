@@ -13,8 +13,8 @@
 
 namespace swingbank::sim::user_models {
 
-/// A signal that a user-defined model may read; `name` is the field of Signals. Per unit on the machine's own
-/// base, its rated voltage included.
+/// A signal that a user-defined model may read; `name` is the field of Signals. Per-unit values refer to the
+/// machine's MVA base and rated voltage.
 struct SignalRecord {
   std::string_view name, meaning;
   Slot
@@ -74,7 +74,7 @@ enum class Act : std::uint8_t {
 /// A vertex of the graph: an operation and its operands.
 struct Vertex {
   Act act;
-  int index = -1;  ///< coefficient, state, signal
+  int index = -1;  ///< index of the coefficient, state or signal
   std::array<int, 4> from = {-1, -1, -1, -1};
   /// Depends only on constants, parameters and given operating-point values, not on coefficients solved by
   /// steady().

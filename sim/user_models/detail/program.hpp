@@ -1,7 +1,7 @@
 #pragma once
-// Register program of a user-defined model's graph: one instruction list fills the coefficients once per run,
-// the other evaluates the derivatives. No branch depends on a value of type T, and execution allocates no
-// memory.
+// Register program of a user-defined model's graph: one instruction list fills the coefficients once for each
+// simulation, the other evaluates the derivatives. No branch depends on a value of type T, and execution
+// allocates no memory.
 #include <cstdint>
 #include <vector>
 
@@ -22,7 +22,7 @@ using Code = std::vector<Instruction>;
 constexpr int kRegisters = 64;
 
 /// Executes `code` on coefficients c, states x and signals s. Act::store writes out[index], or `last` if the
-/// index is -1. r: kRegisters registers. `Free`: Act::limit does not clamp.
+/// index is -1. r: kRegisters registers. If `Free`, Act::limit does not clamp.
 template <class T, bool Free>
 void run(const Code& code, const T* c, const T* x, const Signals<T>& s, T* r, T* out, T& last) {
   using std::exp;
@@ -115,7 +115,7 @@ class Registers {
 struct Compiled {
   Code fixed;                                     ///< computes coefficients
   Code loop;                                      ///< computes derivatives, and the output as the last value
-  std::vector<int> coefficient_of;                ///< per vertex: index of its coefficient, or -1
+  std::vector<int> coefficient_of;                ///< of each vertex: index of its coefficient, or -1
   std::vector<std::pair<int, double>> constants;  ///< coefficient index, value
   int coefficients = 0;
 };

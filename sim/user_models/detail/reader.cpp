@@ -155,8 +155,7 @@ double Reader::state_weight(const std::string& key) {
   return config_.optional<double>(key + "weight", 1.0, {1e-6, 1e6, ""});
 }
 
-/// Reads the states. All names are registered first, so that derivatives may use any state; read() has the
-/// order.
+/// Reads the states. Their derivatives are read later, by read_output(), so that they may use any state.
 void Reader::read_states() {
   const auto names = in_file_order("states");
   for (const std::string& name : names) {
@@ -273,7 +272,7 @@ bool Reader::bends() const {
          });
 }
 
-/// Builds records and program; requires a file without faults.
+/// Builds records and program; requires a file without errors.
 void Reader::finish() {
   std::vector<int> derivatives, also;
   for (const StateEntry& s : states_) {

@@ -1,6 +1,5 @@
 #pragma once
-// Reader of files of user-defined models: resolves names, adds expressions to the graph and converts blocks
-// to states.
+// Reader of user-defined models: resolves names, adds expressions to the graph and converts blocks to states.
 #include <map>
 #include <optional>
 #include <set>
@@ -16,14 +15,14 @@ struct Expression {
   Tree tree;
 };
 
-/// Reads one user-defined model file.
+/// Reader of one user-defined model.
 class Reader {
  public:
   Reader(const std::string& text, const std::filesystem::path& name);
   Definition read();
 
  private:
-  /// A name of an expression, or of a block's output.
+  /// An expression or a block's output that has a name.
   struct Named {
     enum class Kind { signal, reference, block } kind;
     Expression expression;  ///< empty for blocks
