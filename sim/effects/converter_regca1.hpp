@@ -152,7 +152,7 @@ struct Model : shared::ControlledCurrent<Model> {
   }
   template <class T>
   static void derivative(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) {
-    // The rate limit applies to an increase of the magnitude: upward if it delivers, downward if it draws.
+    // The rate limit applies to an increase of |Ip|: upward if the converter delivers, downward if it draws.
     const T wanted = (s.Tm - x[Ip]) * c[iTg], none(renewable::kNoLimit);
     const auto draws = x[Ip] < T(0.0);
     const T moves =

@@ -1,5 +1,5 @@
 #pragma once
-// REECA1: electrical control of a wind turbine or photovoltaic plant, with current limits by voltage.
+// REECA1: electrical control of a wind turbine or photovoltaic plant, with voltage-dependent current limits.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -76,7 +76,8 @@ struct Model {
     Vref = source_first + shared::CompoundSource::size,
     coefficients
   };
-  /// Efd is VB, about 10 pu, times the output of the states, without another lag.
+  /// Weight in step control: VB, about 10 pu, multiplies the output of the states and gives Efd without a
+  /// lag.
   static constexpr double kSourceWeight = 10.0;
   enum X { Vm, xr, Va, xm };
   static constexpr State states[] = {{"Vm", "pu", "measured voltage", kSourceWeight},

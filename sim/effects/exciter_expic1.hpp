@@ -164,7 +164,7 @@ struct Model {
     // A lead needs a lag: TA4, or TA2 if TA4 is zero.
     c[lead1] = select(p[TA4] > zero, zero, p[TA3]);
     c[lead2] = p[TA3];
-    // If only the second of the two is given, it replaces the first.
+    // If only TF2 is given, it takes the place of TF1.
     const auto first = p[TF1] > zero;
     c[iTF1] = inverse(select(first, p[TF1], p[TF2]));
     c[iTF2] = inverse(select(first, p[TF2], zero));

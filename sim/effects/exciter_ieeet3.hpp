@@ -10,8 +10,8 @@
 
 namespace swingbank::sim::effects::exciter_ieeet3 {
 
-/// Band over which the exciter's voltage fades to zero, as a fraction of VE^2: the exciter has no voltage
-/// when the field current consumes the source. A step in place of the band would leave no solution.
+/// Width of the band over which VB fades to zero, as a fraction of VE^2. VB is zero when 0.78 Ifd reaches VE.
+/// A step in place of the band would leave the equations without a solution there.
 constexpr double kLastShare = 0.01;
 
 struct Model {

@@ -211,8 +211,8 @@ struct Model : shared::Alternator<Model> {
           "the range must not be empty",
           fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
   }
-  /// Returns a remark on PSS/E's REXSYS: OpenIPSL scales its limits by the field at 1 pu voltage, PowerWorld
-  /// and InterPSS state them in pu.
+  /// Returns a remark on the limits of PSS/E's REXSYS: OpenIPSL multiplies them by the field signal Vfe at 1
+  /// pu, PowerWorld and InterPSS take them in pu.
   static std::string remark(const double* p) {
     const double field = p[KE] + p[KD];
     return std::abs(field - 1.0) < 0.01

@@ -93,7 +93,8 @@ struct Model {
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
-    // A dispatch at the limit may exceed it by rounding of the power flow; the limit is then the dispatch.
+    // The power flow's rounding error may raise a dispatch at the limit above it; then the limit is raised
+    // too.
     constexpr double kLimitRounding = 1e-9;
     c[ambient] = select(p[AT] < s.Tm, s.Tm, p[AT]);
     if (value_of(s.Tm) > value_of(p[AT]) + kLimitRounding)

@@ -132,7 +132,8 @@ struct Model {
     c[share7] = p[K7];
     c[band] = p[db];
   }
-  /// Computes the valve's rate from the request minus `position`, the governor's feedback of the valve [pu].
+  /// Computes the valve's rate from the requested position minus `position`, which the governor feeds back
+  /// [pu].
   template <class T>
   static void move_valve(const T* c, const T* x, const T& position, const Signals<T>& s, T* dx) {
     const T speed = lead_lag(c[lead], c[iT1], x[governor], dead_band(s.speed, c[band]), dx[governor]);

@@ -191,7 +191,7 @@ struct Model {
     x[water] = s.Tm;
     x[gate] = x[asked] = x[first] = Curve::opening(c + curve, s.Tm);
     x[integral] = select(integrates, x[gate], zero);
-    // Without an integral gain a steady error holds the gate.
+    // Without an integral gain, a steady error keeps the gate open.
     const T e = select(integrates, zero, x[gate] / select(integrates, one, p[KP]));
     x[drooped] = x[derivative] = e;
     c[ref] = fed_back(c, x[gate], s) + e / select(p[RPERM] > zero, p[RPERM], one);

@@ -25,7 +25,7 @@ struct Model {
 )";
   enum P { K, T1, T2, T3, UO, UC, PMAX, PMIN, T4, K1, T5, K2, T6, K3, TA, TB, TC, PRMAX, parameter_count };
   static constexpr Source defaults_from = B::defaults_from, bounds_from = B::bounds_from;
-  /// Per leading parameter: the corresponding parameter of IEEEG1.
+  /// For each of the first parameters: index of the corresponding parameter of IEEEG1.
   static constexpr int kAs[] = {B::K,    B::T1, B::T2, B::T3, B::UO, B::UC, B::PMAX,
                                 B::PMIN, B::T4, B::K1, B::T5, B::K3, B::T6, B::K5};
   static constexpr Source kTimes = literature::own("a fast closing within a second");

@@ -105,7 +105,7 @@ struct Model {
                            select(lasts, none, c[ramp]));
     dx[Voel] = select(operated, moved, none);
   }
-  /// Guards: the timer's expiry, the pickup before it, and the continuous limit at any time.
+  /// Guards: the timer's expiry; before the expiry, the pickup; at any time, the continuous limit.
   static constexpr int guards = 3;
   template <class T>
   static void guard(const T* c, const T* x, const Signals<T>& s, T* g) {

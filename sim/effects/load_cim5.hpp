@@ -1,7 +1,7 @@
 #pragma once
-// CIM5: induction motor with one or two cages. A shunt draws the load's reactive power in excess of the
-// motor's. Stator transients are neglected. Fluxes are in the network's frame, where the rotor turns them at
-// slip speed.
+// CIM5: induction motor with one or two cages. A shunt draws the difference of the load's and the motor's
+// reactive power. Stator transients are neglected. Fluxes are in the synchronous frame of the network,
+// relative to which the rotor turns at slip speed.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -121,7 +121,7 @@ struct Model {
   static constexpr int dyr_columns[] = {IT, Ra, Xa,    Xm,    R1, X1, R2, X2, E1, S1,
                                         E2, S2, Mbase, Pmult, H,  VI, TI, TB, E,  Tnom};
   enum X { psi1r, psi1i, psi2r, psi2i, slip };
-  /// The gains from the states to the power are about 100 for the slip and 1/X'' for the fluxes.
+  /// The weights are the gains from the states to the power: about 100 for the slip, 1/X'' for the fluxes.
   static constexpr State states[] = {{"psi1r", "pu", "first cage's flux, real", 5.0},
                                      {"psi1i", "pu", "first cage's flux, imaginary", 5.0},
                                      {"psi2r", "pu", "second cage's flux, real", 5.0},
@@ -281,7 +281,7 @@ struct Model {
   /// Solves for fluxes and slip with saturation by Newton's method; `x`: unsaturated values as the start.
   template <class T>
   static void saturate(const T* c, const Phasor<T>& v, const T& power, T* x) {
-    constexpr int n = 5, steps = 12;  // initial error of a few per cent, quadratic convergence; +1 for duals
+    constexpr int n = 5, steps = 12;  // enough for an initial error of a few per cent, and one more for duals
     constexpr double nudge = 1e-7;
     const auto rest = [&](const T* at, T* f) {
       const Phasor<T> i = stator(c, at, v);

@@ -1,6 +1,6 @@
 #pragma once
-// SVSMO1: static var compensator at a switched shunt, with continuous thyristor control of reactors and
-// capacitors.
+// SVSMO1: static var compensator at a switched shunt, whose thyristors control reactors and capacitors
+// continuously.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -203,7 +203,7 @@ struct Model {
       return State{.name = symbol, .unit = "pu", .meaning = meaning, .weight = weight, .bends = true};
     };
     return std::array{
-        of_gain("Vm", "measured voltage", 20.0),  // followed by the gain Kpv
+        of_gain("Vm", "measured voltage", 20.0),  // weight: Kpv amplifies its error
         of_gain("e", "state of the transient gain reduction", 20.0),
         of_gain("PI", "integral of the regulator", 1.0),
         of_gain("B", "susceptance", 1.0),
@@ -255,14 +255,14 @@ struct Model {
     using std::sqrt;
     return sqrt(r * r + i * i + T(1e-24));  // keeps the derivative finite at V = 0
   }
-  /// Returns 1 if a voltage exceeds its threshold by `much` > kDipBand, rising linearly from 0 within the
-  /// band.
+  /// Returns 0 for `much` <= 0 and 1 for `much` >= kDipBand, linear between. `much`: distance of a quantity
+  /// beyond its threshold [pu].
   template <class T>
   static T beyond(const T& much) {
     return clamp(much * T(1.0 / renewable::kDipBand), T(0.0), T(1.0));
   }
-  /// Returns 1 if the regulator acts on its error, 0 within the dead-band. The edges of the dead-band are
-  /// smooth over kWakingBand, narrower than those of voltage thresholds.
+  /// Returns 1 if the regulator acts on its error, 0 within the dead-band. The transition at the edges of the
+  /// dead-band has the width kWakingBand, less than that of voltage thresholds.
   template <class T>
   static T awake(const T* c, const T& error, const T& x, T& dx) {
     const T zero(0.0), one(1.0), size = renewable::larger(error, zero - error), per_edge(1.0 / kWakingBand);

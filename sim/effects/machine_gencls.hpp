@@ -1,11 +1,11 @@
 #pragma once
 // GENCLS: the classical machine.
 //
-// Conventions. PSS/E divides the whole of Pm - D w - Pe by speed. With PSS/E's own steps, its record
-// psse-test01 (D = 2) agrees to 0.0001 degrees, the record's last digit. The error is 0.0005 degrees with the
-// three as torques, and 0.115 with Pe undivided. ANDES uses torques (tests/reference/andes). There is no
-// speed voltage, because there are no flux linkages. Pe includes the loss in Ra; no available record of PSS/E
-// has Ra, so this is unverified.
+// Conventions. PSS/E divides Pm - D w - Pe by 1 + w, so all three are powers. Integrated with PSS/E's own
+// time steps, this reproduces its record psse-test01 (D = 2) within 0.0001 degrees, the last digit of the
+// record. With all three as torques the error is 0.0005 degrees; with Pe not divided it is 0.115 degrees.
+// ANDES uses torques (tests/reference/andes). There is no speed voltage, because the model has no flux
+// linkages. Pe includes the loss in Ra; this is unverified, because no available record of PSS/E has Ra.
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/direct/swing.hpp"

@@ -6,7 +6,7 @@
 // subtransient reactances, which Se reduces. The function current() solves this loop for Se by Newton's
 // method.
 //
-// Conventions. Assumed as for GENROU; no available record verifies them.
+// Conventions are assumed to be those of GENROU; no available record verifies them.
 #include <fmt/format.h>
 
 #include "base/constants.hpp"
@@ -72,7 +72,8 @@ struct Model {
        literature::own("not 0, so that the current acts on the saturation; CIM has 0"),
        literature::own("half of the current as flux")},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", shared::kNeglected}};
-  /// With steep saturation the gain from a flux error to the field current is about 10, as in GENROU.
+  /// Weight of flux errors in step control: with steep saturation the gain from a flux error to the field
+  /// current is about 10, as in GENROU.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, Edp, psid, psiq };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
@@ -151,8 +152,8 @@ struct Model {
     x = p[Xdpp];
   }
 
-  /// Returns the argument of Se: air-gap flux plus Kis |I|, and its derivative for current derivatives did,
-  /// diq.
+  /// Returns the argument u of Se, air-gap flux plus Kis |I| [pu]. `du` receives its derivative for the
+  /// current derivatives did, diq.
   template <class T>
   static T magnetisation(const T* c, const T& vd, const T& vq, const T& id, const T& iq, const T& did,
                          const T& diq, T& du) {
@@ -194,8 +195,7 @@ struct Model {
   static void current(const T* c, const T* /*x*/, T* m, Signals<T>& s) {
     // Quadratic convergence: four or five steps reach rounding level, S1.2 = 1.2 needs seven, duals one more.
     constexpr int kNewtonSteps = 8;
-    constexpr double kFlattest =
-        0.1;  // smallest derivative: bounds the step if saturation feeds back on itself
+    constexpr double kFlattest = 0.1;  // lower bound of the residual's derivative, which limits a Newton step
     constexpr double kResidual = 1e-9;
     const T vd = s.Vr * m[sn] - s.Vi * m[cs], vq = s.Vr * m[cs] + s.Vi * m[sn];
     const T a = m[ed] - vd, b = m[eq] - vq;

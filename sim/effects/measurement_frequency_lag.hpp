@@ -36,7 +36,7 @@ struct Model {
   static double angle_lag(const double* p) { return p[lag]; }
   static double memory(const double* p) {
     constexpr double kForgotten =
-        36;  // time constants after which a rounding error is left: exp(-36) = 2e-16
+        36;  // number of time constants after which only rounding remains: exp(-36) = 2e-16
     return kForgotten * p[lag];
   }
 

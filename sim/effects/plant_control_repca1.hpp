@@ -206,7 +206,7 @@ struct Model {
     c[iTp] = inverse(p[Tp]);
     c[iTg] = inverse(p[Tg]);
   }
-  /// Measured quantities, at the place that the parameters name or at the terminal.
+  /// Measured quantities, at the bus and branch that the parameters name, else at the terminal.
   template <class T>
   struct Measured {
     T Vr, Vi, V, Ir, Ii, P, Q;

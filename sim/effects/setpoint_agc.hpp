@@ -80,8 +80,8 @@ struct Model {
   }
 
  private:
-  /// Returns the start time of move k [s]. It uses additions only: a product could be contracted with the
-  /// sum, and the step would miss its switching time by one bit.
+  /// Returns the start time of move k [s]. It uses additions only: the compiler may fuse a product with the
+  /// sum, and the step would then miss its switching time by one bit.
   template <class T>
   static T begin(const T* p, int k) {
     T t = p[start];

@@ -18,7 +18,8 @@ struct Model {
           "blocks, columns; PSS/E LCFB1",
       dyr_name = "LCFB1";
   static constexpr Slot slot = Slot::setpoint;
-  /// Like those moves it is slower than a recorded event; the search for a missing effect tries neither.
+  /// Like AGCMOVES, the control is slower than a recorded event; the search for a missing effect tries
+  /// neither.
   static constexpr std::string_view variant_of = "AGCMOVES";
   static constexpr std::string_view description = R"(
   e = PBF (Pset - P/(1 + s Tpelec)) - FBF Fb w          Pset: the power at the operating point

@@ -99,8 +99,8 @@ struct Model {
     coefficients
   };
   enum X { y, ydot, w, wdot, lead1, lead2, washed, xr, xi };
-  // Errors of the derivative states decay within a filter's time constant, which is therefore their weight. A
-  // numerator amplifies the filter's errors by the coefficient `sharp`.
+  // An error of a derivative state decays within the filter's time constant, so its weight is a typical time
+  // constant. A numerator amplifies the filter's errors by the coefficient `sharp`.
   static constexpr State states[] = {
       {.name = "y",
        .unit = "pu",

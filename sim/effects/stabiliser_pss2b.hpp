@@ -141,7 +141,8 @@ struct Model {
     coefficients = slow + kRampLags
   };
   enum X { w1, w2, y1, w3, w4, y2, ramp, lead1 = ramp + kRampLags, lead2, lead3 };
-  /// Every state is followed by KS1 and the leads, a gain of some tens in total, and by an exciter's gain.
+  /// Weight in step control: KS1 and the leads amplify every state by some tens, and the exciter's gain
+  /// follows.
   static constexpr double kGainWeight = 10.0;
   static constexpr State states[] = {
       {"w1", "pu", "first washout of the first input", kGainWeight, -1, -1, {iTw1}},
@@ -177,7 +178,7 @@ struct Model {
                       "frequency (2) and voltage slope (6) are not modelled",
                       who),
           fmt::format("give {} = 1, 3, 4 or 5", parameters[i].symbol));
-    for (int i : {REM1, REM2})  // preceded by the input code; only a voltage can be remote
+    for (int i : {REM1, REM2})  // p[i - 1] is the input code; only a voltage can be remote
       bad(p[i] != 0.0 && p[i - 1] == 5.0, says(i), fmt::format("{} measures only its own machine", who),
           fmt::format("give {} = 0", parameters[i].symbol));
     for (int i : {M, N})

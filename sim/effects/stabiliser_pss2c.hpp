@@ -1,8 +1,8 @@
 #pragma once
 // PSS2C: PSS2B with a fourth lead-lag and an output switched by the machine's power.
 //
-// The simulation agrees with the record psse_powersimulationsdynamics/PSS2C, whose power crosses both
-// thresholds, within 0.16 % of swing with exact integration.
+// With exact integration, the simulation reproduces the record psse_powersimulationsdynamics/PSS2C within
+// 0.16 % of its swing. The power of this record crosses both thresholds.
 #include "sim/effects/stabiliser_pss2b.hpp"
 
 namespace swingbank::sim::effects::stabiliser_pss2c {
@@ -50,8 +50,8 @@ struct Model {
   static constexpr std::span<const int> dyr_columns = kColumns;
   enum C { t12 = B::coefficients, iT13, low, high, on, off, coefficients };
   static constexpr int lead4 = static_cast<int>(std::size(B::states)), output = lead4 + 1;
-  static constexpr double kSwitchRate = 200.0;  ///< [1/s]
-  static constexpr double kPerPower = 1e5;      ///< [1/pu] the switch is complete within 1e-5 pu
+  static constexpr double kSwitchRate = 200.0;  ///< rate at which the output switches [1/s]
+  static constexpr double kPerPower = 1e5;      ///< [1/pu] reciprocal of the band beyond a threshold, 1e-5 pu
   static constexpr auto kStates = [] {
     std::array<State, output + 1> list{};
     for (int i = 0; i < lead4; ++i) list[static_cast<std::size_t>(i)] = B::states[i];

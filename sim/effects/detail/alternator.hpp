@@ -11,7 +11,7 @@ namespace swingbank::sim::effects::shared {
 template <class Model>
 struct Alternator {
   static constexpr Slot slot = Slot::exciter;
-  /// Weight of the regulator's inputs, which affect Efd with a gain of hundreds within the regulator's lags.
+  /// Weight in step control of the regulator's inputs, which affect Efd with a gain of hundreds.
   static constexpr double kErrorWeight = 10.0;
 
   static std::string_view unphysical(const double*) { return ""; }

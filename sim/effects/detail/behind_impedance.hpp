@@ -12,7 +12,7 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Requires of a Model: the parameters below with names without the k, the coefficients that prepare_common()
+/// A Model must have the parameters below, with names without the k, the coefficients that prepare_common()
 /// fills, and the states Ip, Iq and Vf.
 template <class Model>
 struct BehindImpedance : ControlledCurrent<Model> {
@@ -52,7 +52,8 @@ struct BehindImpedance : ControlledCurrent<Model> {
                                  kNoNullValue,
                                  "source reactance",
                                  literature::own("InterPSS's for aggregated converters")};
-  /// Fraction of Imax below which the limit of the second current follows the tangent instead of the circle.
+  /// Fraction of Imax below which the limit of the current without priority follows the tangent, not the
+  /// circle.
   static constexpr double kTangent = 0.05;
 
  protected:
@@ -133,7 +134,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
     s.V = V;
     return {};
   }
-  /// Returns the limit of the second current beside the current `leading`, which has priority [pu].
+  /// Returns the limit of the current without priority; `leading`: the current with priority [pu].
   template <class T>
   static T left(const T* c, const T& leading) {
     using std::sqrt;

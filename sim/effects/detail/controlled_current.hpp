@@ -24,8 +24,8 @@ struct ControlledCurrent {
                                        literature::own("about a cycle")};
   static constexpr State kVrlag = {"Vrlag", "pu", "lagged voltage, real part", 0.1},
                          kVilag = {"Vilag", "pu", "lagged voltage, imaginary part", 0.1};
-  /// Reactance of the source in the network equations [pu]: any value is exact (decision 37); a large one
-  /// gives fast convergence.
+  /// Reactance of the source in the network equations [pu]. Any value gives exact results (decision 37); a
+  /// large one gives fast convergence.
   static constexpr double kReactance = 10.0;
   static constexpr double kNoFrequency =
       1e-3;  ///< voltage below which the measured frequency fades to f0 [pu]

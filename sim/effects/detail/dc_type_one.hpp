@@ -1,13 +1,13 @@
 #pragma once
 // Rotating exciter with a lead-lag and a regulator: DC1 (IEEEX1, ESDC1A) with fixed limits, and the part
-// shared with EXDC2. A Model declares whether the lower limit of its field voltage is zero.
+// shared with EXDC2. A Model declares by `ends_at_zero` whether the lower limit of its field voltage is zero.
 #include "sim/effects/detail/rotating_dc.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-/// Requires of a Model: regulator(c, x, u, V, dx), and hindrance(c, Vr, V), which returns the reason why Vr
-/// cannot have its steady value, or "".
+/// A Model must have the functions regulator(c, x, u, V, dx) and hindrance(c, Vr, V). The latter returns the
+/// reason why Vr cannot have its steady value, or "".
 template <class Model>
 struct DcBehindLeadLag : RotatingDc<Model> {
   using Dc = RotatingDc<Model>;

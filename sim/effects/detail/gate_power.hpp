@@ -8,14 +8,15 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Rate with which a gate or valve follows beyond its backlash [1/s]; fast compared with the servo.
+/// Rate at which the position behind a backlash follows the gate or valve [1/s]; fast compared with the
+/// servo.
 inline constexpr double kFollowRate = 50.0;
 
 /// Curve through `count` points; a Model has `size` coefficients for it.
 template <int count>
 struct GatePower {
   static constexpr int segments = count - 1;
-  /// Per segment: opening and power at its beginning, its width, its slope and the reciprocal slope.
+  /// For each segment: opening and power at its beginning, its width, its slope and the reciprocal slope.
   enum { begin, base = begin + segments, width = base + segments, slope = width + segments };
   static constexpr int flat = slope + segments, size = flat + segments;
 
@@ -62,8 +63,8 @@ struct GatePower {
   }
 
  private:
-  /// Integrates the segments' rates up to `at`, starting at `first`. `inverse`: the independent variable is
-  /// the power.
+  /// Adds the segments up to `at`, each with its slope, to the value `first`. `inverse`: the independent
+  /// variable is the power.
   template <class T>
   static T along(const T* c, const T& at, int from, const T& first, int rate, bool inverse) {
     T sum = first;

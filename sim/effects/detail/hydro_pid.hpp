@@ -1,6 +1,6 @@
 #pragma once
-// Common part of the hydro governors WSHYGP and HYG3: PID regulator with an input filter and an optional
-// feedback through a droop without a lag, gate servo with backlash, points of the gate's curve.
+// Common part of the hydro governors WSHYGP and HYG3: PID regulator with an input filter and optional droop
+// feedback, gate servo with backlash, points of the gate's curve.
 #include <array>
 #include <string>
 
@@ -16,7 +16,7 @@ T turbine_rating(const T& given, const Conventions& conventions) {
   return select(given > T(kLeastRating), given, T(conventions.mva));
 }
 
-/// Openings and powers of the points of a gate's curve; a model has the first of them.
+/// Openings and powers of the points of a gate's curve; a model uses the first few.
 inline constexpr Source kFarPoint = literature::own("99 marks a point that is never reached");
 constexpr Parameter curve_point(std::string_view name, std::string_view meaning) {
   return {name, name, "pu", 0.0, 0.0, 99.0, kNoNullValue, meaning, kAsEffect, kFarPoint};
@@ -65,7 +65,7 @@ struct GateServo {
 };
 
 /// PID regulator with input filter: u/(1 + s TD) --> KP + KI/s + s KD/(1 + s TF). Its states and coefficients
-/// are the first ones of a Model.
+/// must precede all others of a Model.
 struct HydroPid {
   enum C { iTD, kp, ki, kd, iTF, coefficients };  ///< kd: KD/TF
   enum X { filtered, integral, lagged, count };
@@ -82,8 +82,8 @@ struct HydroPid {
     c[iTF] = inverse(TF);
     c[kd] = KD * c[iTF];
   }
-  /// Returns the output for the input `u - back * output`. Without the filter this is an algebraic loop,
-  /// which is solved.
+  /// Returns the output for the input `u - back * output`, where `back` is the droop. Without the filter this
+  /// is an algebraic loop, which is solved in closed form.
   template <class T>
   static T evaluate(const T* c, const T* x, const T& u, const T& back, T* dx) {
     const T rest = x[integral] - c[kd] * x[lagged], share = c[kp] + c[kd];

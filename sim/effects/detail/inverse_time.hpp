@@ -63,7 +63,7 @@ inline constexpr Parameter kLowest =
 struct InverseTime {
   enum { irated, i1, i2, i3, t1, t2, slope12, slope23, size };
   static constexpr double kOperated = 1.0;      ///< value of the expired timer
-  static constexpr double kOperatedFor = 2.0;   ///< final value, so that rounding cannot reset the timer
+  static constexpr double kOperatedFor = 2.0;   ///< final value of the timer, which rounding cannot reset
   static constexpr double kTimerReset = -10.0;  ///< reset rate of the timer below the pickup [1/s]
 
   template <class T>
@@ -77,7 +77,7 @@ struct InverseTime {
     c[slope12] = (p[time2] - p[time1]) / (p[efd2] - p[efd1]);
     c[slope23] = (p[time3] - p[time2]) / (p[efd3] - p[efd2]);
   }
-  /// Returns the time to operate [s] at a current i >= pickup [of rated].
+  /// Returns the operating time [s] at a quantity i >= pickup [relative to rated].
   template <class T>
   static T operating_time(const T* c, const T& i) {
     const T at = clamp(i, c[i1], c[i3]);
@@ -91,7 +91,7 @@ struct InverseTime {
     return select(one <= timer, one, select(c[i1] < i, one / operating_time(c, i), T(kTimerReset) * timer));
   }
 
-  /// Guards at discontinuities of the derivatives: the timer's expiry, and the pickup before it.
+  /// Guards at discontinuities of the derivatives: the timer's expiry and, before the expiry, the pickup.
   static constexpr int guards = 2;
   template <class T>
   static void guard(const T* c, const T& timer, const T& limited, T* g) {

@@ -1,11 +1,11 @@
 #pragma once
-// Timers as states, with and without latching after their delay.
+// Timers whose time is a state, with and without latching after the delay.
 #include "sim/effects/detail/renewable.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-/// Latching timer: runs while `beyond` is 1 and resets if this ends before `delay` [s]. Returns 1 permanently
-/// after the delay, else 0.
+/// Latching timer: runs while `beyond` is 1 and resets if `beyond` ends before `delay` [s]. Returns 1
+/// permanently after the delay, else 0.
 template <class T>
 T passed(const T& beyond, const T& delay, const T& x, T& dx) {
   const T zero(0.0), one(1.0), past = (x - delay) * T(1.0 / renewable::kFading);

@@ -6,9 +6,10 @@ namespace swingbank::sim::effects::shared {
 
 inline constexpr double kIntegralBand = 2e-3;  ///< width beyond a limit over which integration stops [pu]
 
-/// Returns the derivative of a PI's integral: zero while the unlimited output `out` is beyond a limit and
-/// `derivative` leads further out, else `derivative`. It fades over a narrow band: with a step there is no
-/// solution if the proportional part falls while the integral rises (sliding along the limit).
+/// Returns the derivative of a PI's integral. It is zero while the unlimited output `out` is beyond a limit
+/// and `derivative` would move it further out, else `derivative`. The transition is linear over
+/// kIntegralBand. With a discontinuous transition there is no solution if the proportional part falls while
+/// the integral rises (sliding along the limit).
 template <class T>
 inline T non_windup(const T& derivative, const T& out, const T& least, const T& most) {
   const T zero(0.0), one(1.0), per_band(1.0 / kIntegralBand);

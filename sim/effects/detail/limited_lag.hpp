@@ -1,5 +1,5 @@
 #pragma once
-// Lag with moving limits: a state beyond a limit is driven back to it, which prevents windup.
+// Lag with variable limits: a state beyond a limit is driven back to it, which prevents windup.
 #include "sim/core/blocks.hpp"
 
 namespace swingbank::sim::effects::shared {

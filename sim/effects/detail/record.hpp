@@ -1,6 +1,6 @@
 #pragma once
-// Variants of a parameter's record in several effects: another name or another default. Columns of a .dyr
-// record in the order of the parameters.
+// Helpers for the parameter records of related effects: a copy with another name or default, and the columns
+// of a .dyr record in the order of the parameters.
 #include <array>
 #include <cstddef>
 #include <numeric>
@@ -10,12 +10,12 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Returns the record with the name of a model's guide.
+/// Returns the record under the name that the model's guide uses.
 constexpr Parameter renamed(Parameter record, std::string_view name) {
   record.name = record.symbol = name;
   return record;
 }
-/// Returns the record with another default. `from`: its source; none: the effect's own source.
+/// Returns the record with another default. `from`: source of the default; if omitted, that of the effect.
 constexpr Parameter with(Parameter record, double standard, Source from = kAsEffect) {
   record.default_value = standard;
   record.default_from = from;

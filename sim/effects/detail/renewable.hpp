@@ -9,7 +9,7 @@ namespace swingbank::sim::effects::renewable {
 
 inline constexpr double kSmallVoltage = 0.01;  ///< lower bound of divisors (WECC's models) [pu]
 inline constexpr double kDipBand = 2e-3;  ///< width below Vdip and above Vup over which a dip sets in [pu]
-inline constexpr double kNoLimit = 1e6;   ///< [pu]
+inline constexpr double kNoLimit = 1e6;   ///< limit that never acts [pu]
 
 inline constexpr Source kWecc = literature::own(
     "the sign that the equations need; beyond the values of WECC's guides and the case files, or 99 and "
@@ -17,8 +17,8 @@ inline constexpr Source kWecc = literature::own(
 inline constexpr Source kFlag = literature::derived("the defined codes");
 inline constexpr Source kBus = literature::psse("bus numbers, up to 999997; 0: the unit's own terminal");
 
-/// Returns 0 between the edges and the distance to the edge beyond them; an edge of the wrong sign counts as
-/// 0.
+/// Returns the distance of u from the nearer edge of a dead-band, and 0 between the edges. An edge of the
+/// wrong sign counts as 0.
 template <class T>
 T dead_zone(const T& u, const T& below, const T& above) {
   return positive_part(u - positive_part(above)) - positive_part(T(0.0) - positive_part(T(0.0) - below) - u);
@@ -33,18 +33,18 @@ T regulator(const T& kp, const T& ki, const T& u, const T& least, const T& most,
   return clamp(out, least, most);
 }
 
-/// Returns 1 in a voltage dip (below Vdip or above Vup), else 0, with a linear transition over kDipBand. The
-/// transition gives an equilibrium to a control that ends its own dip.
+/// Returns 1 in a voltage dip (below Vdip or above Vup), else 0, with a linear transition over kDipBand.
+/// Within the transition, a control whose own action ends the dip can reach an equilibrium.
 template <class T>
 T voltage_dip(const T& V, const T& vdip, const T& vup) {
   const T zero(0.0), one(1.0), per_band(1.0 / kDipBand);
   return clamp((vdip - V) * per_band, zero, one) + clamp((V - vup) * per_band, zero, one);
 }
 
-inline constexpr double kFollow = 2e-3;  ///< time constant for setting timers and tracking kept values [s]
-inline constexpr double kFading = 1e-3;  ///< time over which values kept after a dip fade [s]
-/// Timer after a dip: its state is set to `whole` [s] in the dip and decreases to 0 after it. Returns 1 while
-/// it runs after the dip.
+inline constexpr double kFollow = 2e-3;  ///< time constant for setting timers and tracking stored values [s]
+inline constexpr double kFading = 1e-3;  ///< time over which values stored after a dip fade [s]
+/// Timer after a dip: its state x is set to `whole` [s] during the dip and then decreases to 0. Returns 1
+/// while x decreases, else 0.
 template <class T>
 T timer(const T& dip, const T& whole, const T& x, T& dx) {
   const T zero(0.0), one(1.0);
@@ -65,7 +65,7 @@ T larger(const T& a, const T& b) {
   return select(a < b, b, a);
 }
 
-/// Identity, for electrical controls that keep no value after a dip.
+/// Identity, for electrical controls that store no value after a dip.
 inline constexpr auto as_it_is = [](const auto& given) { return given; };
 
 /// Returns the remaining limit of one current, sqrt(most^2 - used^2) [pu]; the small minimum keeps its

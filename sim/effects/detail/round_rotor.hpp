@@ -35,9 +35,8 @@ struct RoundRotor {
       {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, "saturation factor at 1.2 pu flux", kMildSaturation,
        kSaturation},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", kNeglected}};
-  /// Above a steep saturation knee (B up to 70) the gain from a flux error to the field current is about 10.
-  /// The resulting angle error persists. Without this weight 3 of 600 random events differed from the
-  /// reference by up to 3e-4 rad; with it the largest difference is 7e-5 rad.
+  /// Weight of flux errors in step control. Above a steep saturation knee (B up to 70) the gain from a flux
+  /// error to the field current is about 10, and the resulting angle error persists.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, Edp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
@@ -49,7 +48,7 @@ struct RoundRotor {
   static constexpr int dyr_columns[] = {Tdop, Tdopp, Tqop, Tqopp, H, D, Xd, Xq, Xdp, Xqp, Xdpp, Xl, S10, S12};
   static constexpr int raw_resistance = Ra, raw_reactance = -1;
 
-  /// Time constant of E'd if T'qo = 0, that is, without this rotor circuit [s].
+  /// Time constant of E'd if T'qo = 0, which means that there is no such rotor circuit [s].
   static constexpr double kAtOnce = 0.01;
 
   enum C {

@@ -40,8 +40,8 @@ struct SalientPole {
          {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, s12, kAsRound, kSaturation},
          {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", kNeglected}}};
   }
-  /// As for the round-rotor machine: above a steep saturation knee the gain from a flux error to the field
-  /// current is about 10.
+  /// Weight of flux errors in step control, as for the round-rotor machine: above a steep saturation knee the
+  /// gain from a flux error to the field current is about 10.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},

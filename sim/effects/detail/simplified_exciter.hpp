@@ -23,8 +23,8 @@ struct SimplifiedExciter {
                              kK = {"K", "K", "pu", 100.0, 0.5, 2000.0, kNoNullValue, "gain"},
                              kTE = {"TE", "TE", "s",          0.1,
                                     0.0,  5.0,  kNoNullValue, "exciter time constant (0: none)"};
-  // An error of the lead-lag persists for TB and is amplified to Efd about 100 times; one of Efd decays with
-  // TE.
+  // An error of the lead-lag's state persists for TB and is amplified about 100 times to Efd. An error of Efd
+  // itself decays with TE.
   static constexpr State kLeadLag = {"leadlag", "pu", "state of the lead-lag", 20.0, -1, -1, {iTB}};
   static constexpr double kLagWeight = 0.1;
 

@@ -1,6 +1,6 @@
 #pragma once
-// Common part of the static loads ZIP, LDFR and IEEL: voltage behind the lag that measures the frequency,
-// current of an admittance, checks. Of ZIP and LDFR also the parts at constant current and power.
+// Common part of the static loads ZIP, LDFR and IEEL: the lagged voltage, which measures the frequency; the
+// current of an admittance; checks. For ZIP and LDFR also the parts of constant current and power.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -15,7 +15,8 @@ template <class Model>
 struct StaticLoad {
   static constexpr Slot slot = Slot::load;
   enum X { xr, xi };
-  /// The gain from an error of x to P is the exponent or slope of the frequency over 2 pi f0 Tf, about 0.1.
+  /// The weight is the gain from a state's error to P: the load's frequency coefficient over 2 pi f0 Tf,
+  /// about 0.1.
   static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
                                      {"xi", "pu", "lagged voltage, imaginary", 0.1}};
 
@@ -56,8 +57,8 @@ struct LoadOfParts : StaticLoad<Model> {
     if (!(p[Model::Qi] + p[Model::Qp] <= 1.0)) return "Qi + Qp <= 1";
     return "";
   }
-  /// Returns why the operating point is infeasible: low voltage reduces a part there; empty if none. `v`: |V|
-  /// [pu].
+  /// Returns the reason if low voltage reduces a part at the operating point, which is then infeasible; else
+  /// empty. `v`: |V| [pu].
   template <class T>
   static std::string reduced(const T* p, const T& v) {
     const auto needs = [&](int one, int other, int threshold) {
