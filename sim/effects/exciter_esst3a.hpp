@@ -157,8 +157,8 @@ struct Model {
     const T back = c[kg] * Efd;
     return select(back < c[vgmax], back, c[vgmax]);
   }
-  /// Returns the output of an inner loop without a lag: its closed solution if the feedback is below VGMAX,
-  /// else the output with feedback VGMAX.
+  /// Returns the output of an inner loop without a lag: the closed-form solution if the feedback is below
+  /// VGMAX, else the output with feedback VGMAX.
   template <class T>
   static T at_once(const T* c, const T& vr, const T& VB) {
     const T within = c[inner] * vr / (T(1.0) + c[inner] * c[kg] * VB), beyond = c[inner] * (vr - c[vgmax]);

@@ -144,7 +144,7 @@ struct Model {
     dx[xr] = shared::non_windup(c[kir] * e, outer, c[vrmin], c[vrmax]);
     const T va = lag(c[iTA], x[Va], clamp(outer, c[vrmin], c[vrmax]), dx[Va]);
     const T VB = shared::CompoundSource::voltage(c + source_first, s);
-    // Closed solution of the loop Vmr = KPM (Va - KG VB Vmr) + xm; the limits apply to the solution.
+    // Closed-form solution of the loop Vmr = KPM (Va - KG VB Vmr) + xm; the limits apply to the solution.
     const T inner = (c[kpm] * va + x[xm]) / (one + c[kpm] * c[kg] * VB);
     s.Efd = VB * clamp(inner, c[vmmin], c[vmmax]);
     dx[xm] = shared::non_windup(c[kim] * (va - c[kg] * s.Efd), inner, c[vmmin], c[vmmax]);

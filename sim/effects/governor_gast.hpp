@@ -93,8 +93,8 @@ struct Model {
   }
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
-    // The power flow's rounding error may raise a dispatch at the limit above it; then the limit is raised
-    // too.
+    // Rounding of the power flow may put a dispatch above the limit; the limit is then raised to the
+    // dispatch.
     constexpr double kLimitRounding = 1e-9;
     c[ambient] = select(p[AT] < s.Tm, s.Tm, p[AT]);
     if (value_of(s.Tm) > value_of(p[AT]) + kLimitRounding)

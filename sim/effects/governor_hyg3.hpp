@@ -135,7 +135,7 @@ struct Model {
       {"DBL", "dbL", "Hz", 0.0, -1.2, 0.0, 0.0, "lower edge of the speed's dead-band", kAsEffect, kBandHz}};
   static constexpr auto dyr_columns = shared::columns_to<DBL>();
   enum C {
-    pid = Pid::coefficients,  ///< flag
+    pid = Pid::coefficients,  ///< 1: PID, 0: double derivative
     by_gate,
     by_power,
     iTT,

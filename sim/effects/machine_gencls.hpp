@@ -98,7 +98,8 @@ struct Model {
     s.Efd = c[E];
     return {};
   }
-  /// Estimates H and D; Ra and X'd affect only the fluxes and keep their `known` values.
+  /// Estimates H and D. Ra and X'd keep their `known` values, because the swing equation does not determine
+  /// them.
   static std::vector<std::vector<double>> closed_form(const Recording& record, const double* known) {
     const direct::Swing found = direct::swing_of(record, known[Ra], direct::Divided::all);
     return {{found.H, found.D, known[Ra], known[Xdp]}};

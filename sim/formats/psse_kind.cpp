@@ -8,8 +8,8 @@
 namespace swingbank::sim::formats {
 namespace {
 
-/// Returns the first line with a field, split. Returns none if there is no such line or the file cannot be
-/// read; the file's reader reports that error.
+/// Returns the first line that has fields, as a record. Returns none if there is no such line or the file
+/// cannot be read; the file's reader reports that error.
 std::optional<psse::Record> first_record(const std::filesystem::path& file) {
   try {
     Problems ignored;

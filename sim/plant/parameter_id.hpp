@@ -37,7 +37,7 @@ int insert_block(Plant& plant, Block block);
 /// One parameter of a plant.
 struct ParameterId {
   int block = kMachineBlock;  ///< number of the block
-  int index = 0;              ///< into the parameter records of the block's effect
+  int index = 0;              ///< index of its record in the block's effect
   /// Compares block, then index.
   friend auto operator<=>(const ParameterId&, const ParameterId&) = default;
 };

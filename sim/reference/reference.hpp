@@ -1,6 +1,6 @@
 #pragma once
 // Reference integrator: SUNDIALS IDA with KLU on the unreduced differential-algebraic equations (all bus
-// voltages are unknowns). Slow and exact; the fast integrator is tested against it.
+// voltages are unknowns). It is slow and accurate; the fast integrator is tested against it.
 #include "base/constants.hpp"
 #include "sim/core/trajectory.hpp"
 #include "sim/grid/grid.hpp"

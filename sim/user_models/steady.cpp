@@ -44,8 +44,8 @@ class Search {
     return verdict();
   }
 
-  /// Returns J^-1 `by`: the negative derivatives of the unknowns, where `by` is the derivative of the
-  /// residual.
+  /// Returns the solution u of J u = `by`. If `by` is the derivative of the residual, -u is that of the
+  /// unknowns.
   [[nodiscard]] Vector follow(const Vector& by) { return solve(by); }
   template <class T>
   static std::vector<T> residual_of(const Definition& user_model, const T* c, const T* x,

@@ -8,10 +8,10 @@ namespace {
 
 using enum Use;
 
-// Sources of names and order, public files: [1] thadhaines/PSLTDSim,
-// tests/dydParse/sixMachineGENERICmodels.dyd (excerpts of a WECC case), [2] the same,
-// verification/GE4machine/g4_a.dyd (written by PSLF, with its template), [3] the same,
-// testCases/200201-sunset/sixMachineLTD.dyd, [4] the same, epctemp.dyd, [5] PowerWorld's help on EXST1_GE.
+// Sources of the columns' names and order. Files of thadhaines/PSLTDSim: [1]
+// tests/dydParse/sixMachineGENERICmodels.dyd (excerpts of a WECC case), [2] verification/GE4machine/g4_a.dyd
+// (written by PSLF, with its template), [3] testCases/200201-sunset/sixMachineLTD.dyd, [4] epctemp.dyd. [5]
+// PowerWorld's help on EXST1_GE.
 
 constexpr Column kGenrou[] = {  // [1], [2]
     {"tpdo", value, 0}, {"tppdo", value, 1},     {"tpqo", value, 2},  {"tppqo", value, 3},
@@ -31,7 +31,7 @@ constexpr Column kGentpj[] = {  // [1]
     {"lpd", value, 8},  {"lpq", value, 9},   {"lppd", value, 10},      {"lppq", value, 11},
     {"ll", value, 12},  {"s1", value, 13},   {"s12", value, 14},       {"ra", resistance},
     {"rcomp", off},     {"xcomp", off},      {"accel", free, -1, 0.5}, {"kis", value, 15}};
-constexpr Column kGencls[] = {  // the repository of [1], verification/refactor/ramp/ee554.exc.dyd
+constexpr Column kGencls[] = {  // PSLTDSim, verification/refactor/ramp/ee554.exc.dyd
     {"h", value, 0},     {"d", value, 1}, {"ra", resistance},
     {"lppd", reactance}, {"rcomp", off},  {"xcomp", off}};
 

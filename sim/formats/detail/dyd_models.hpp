@@ -8,8 +8,8 @@ namespace swingbank::sim::formats::dyd {
 /// Conversion of a column.
 enum class Use {
   value,      ///< copied to a column of the .dyr
-  mva_power,  ///< copied times the turbine's rating over the machine's base
-  per_mva,    ///< copied divided by the turbine's rating over the machine's base
+  mva_power,  ///< copied, multiplied by the ratio of the turbine's rating to the machine's base
+  per_mva,    ///< copied, divided by this ratio
   again,      ///< repeats the limit of an earlier column; must not be narrower
   rating,     ///< column of the .dyr for the turbine's rating [MW], which precedes the values in a .dyd
   off,        ///< no counterpart; must have the value that disables it

@@ -91,7 +91,7 @@ class EpcReader {
   Identities identities_{options_, network_, problems_};
   std::string section_;  ///< section being read
   std::map<int, int> index_;
-  std::vector<double> vsched_;  ///< scheduled voltage per bus [pu]
+  std::vector<double> vsched_;  ///< scheduled voltage of each bus [pu]
   std::map<std::tuple<int, int, std::string>, std::vector<Part>>
       parts_;                                             ///< (ends, circuit) -> line sections
   std::vector<std::tuple<int, int, std::string>> order_;  ///< keys of parts_ in file order

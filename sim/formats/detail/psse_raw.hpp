@@ -167,7 +167,7 @@ class RawReader {
   Identities identities_{options_, network_, problems_};
   std::string section_;  ///< section being read
   std::vector<network::Device> devices_;
-  std::vector<int> regulated_;  ///< per generator: number of the regulated bus, 0: its own
+  std::vector<int> regulated_;  ///< of each generator: number of the regulated bus, 0: its own
   struct Correction {
     std::size_t branch;
     int table;

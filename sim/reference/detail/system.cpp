@@ -309,7 +309,7 @@ bool ReferenceSystem::newton(double t, double* y) const {
     if (lu.info() != Eigen::Success) return false;
     const Eigen::Map<const Eigen::VectorXd> rest(f.data() + plants_.states(), 2 * buses_);
     Eigen::VectorXd step = lu.solve(rest);
-    step += lu.solve(rest - jv * step).eval();  // refinement: a fault of 1e-6 pu worsens the condition
+    step += lu.solve(rest - jv * step).eval();  // refinement: a fault of 1e-6 pu is ill-conditioned
     double largest = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(largest)) return false;
     if (largest > 1.0) step *= 1.0 / largest;  // a constant-power load may make the first steps very long

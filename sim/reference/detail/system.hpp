@@ -45,7 +45,7 @@ class ReferencePlants {
   explicit ReferencePlants(const grid::Grid& grid);
   [[nodiscard]] const std::vector<Unit>& units() const { return units_; }  ///< plants, then loads
   [[nodiscard]] int states() const { return states_; }
-  /// Further switching times: steps of the plants' effects [s].
+  /// Further switching times, at which effects of the plants change in a step [s].
   [[nodiscard]] const std::vector<double>& switching_times() const { return switching_times_; }
 
  private:

@@ -39,7 +39,7 @@ class Reader {
     int first_state = -1;
   };
 
-  // reader.cpp
+  // Defined in reader.cpp:
   void read_head();
   void read_entry_point();
   void read_parameters();
@@ -54,7 +54,7 @@ class Reader {
   std::vector<std::string> in_file_order(const std::string& table);
   std::string describe() const;
 
-  // lookup.cpp
+  // Defined in lookup.cpp:
   std::optional<Expression> expression(const std::string& key, bool condition = false);
   int value(const std::string& key, std::optional<double> otherwise = {});
   int lower(const Tree& tree, const std::string& key);
@@ -68,7 +68,7 @@ class Reader {
   void problem(const std::string& key, std::size_t offset, std::string what, std::string why,
                std::string remedy);
 
-  // blocks.cpp
+  // Defined in blocks.cpp:
   void read_blocks();
   int block_output(const std::string& name);
   void finish_block(const std::string& name);
