@@ -1,4 +1,4 @@
-// Writer of .raw files, versions 32 to 35, with an exact round trip of all values.
+// Writer of .raw files, versions 32 to 35, with an exact round trip of the written values.
 #include <array>
 
 #include "base/durable.hpp"
