@@ -194,7 +194,7 @@ struct Model {
     T unused;
     const T zero(0.0),
         se = J::saturation(c, J::magnetisation(c, zero - s.Vi, s.Vr, zero - s.Ii, s.Ir, zero, zero,
-                                               unused));  // independent of the axes
+                                               unused));  // the same for any orientation of the axes
     const T k = T(1.0) + se, xqs = p[Xl] + (p[Xq] - p[Xl]) / k;
     x[delta] = atan2(s.Vi + p[Ra] * s.Ii + xqs * s.Ir, s.Vr + p[Ra] * s.Ir - xqs * s.Ii);
     x[speed] = zero;

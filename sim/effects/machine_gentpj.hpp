@@ -247,7 +247,7 @@ struct Model {
     // The terminal determines the air-gap flux, and thus Se, before the angle is known.
     T unused;
     const T zero(0.0), se = saturation(c, magnetisation(c, zero - s.Vi, s.Vr, zero - s.Ii, s.Ir, zero, zero,
-                                                        unused));  // independent of the axes
+                                                        unused));  // the same for any orientation of the axes
     const T kd0 = T(1.0) + se, kq0 = T(1.0) + c[ratio] * se;
     const T xqs = p[Xl] + (p[Xq] - p[Xl]) / kq0;  // the q axis lies along V + (Ra + jXqs) I
     x[delta] = atan2(s.Vi + p[Ra] * s.Ii + xqs * s.Ir, s.Vr + p[Ra] * s.Ir - xqs * s.Ii);

@@ -20,7 +20,7 @@ inline std::string beyond_imax(double active, double reactive, double most) {
 }
 
 struct ElectricalControl {
-  /// Parameters by meaning, independent of their order in an effect.
+  /// Parameters of an effect by their meaning, independent of their order in the effect.
   template <class T>
   struct Values {
     bool pf = false, vflag = false, qflag = false, active_first = false;
@@ -147,8 +147,8 @@ struct ElectricalControl {
     T most_p, least_p, most_q;
   };
   /// Computes both commands: s.Tm (active) and s.Efd (reactive). A Model passes three functions. `total` adds
-  /// the ride-through contribution to the reactive current. `active` maps the ordered to the active current.
-  /// `active_limit` maps the remaining limit to that of the active current.
+  /// the ride-through contribution to the reactive current. `active` maps the ordered current to the active
+  /// current. `active_limit` maps the upper limit of the active current to the one that applies.
   template <class T, class Total, class Active, class ActiveLimit>
   static void commands(const T* c, const T* x, const T& measured, const T& regulated, const T& runs,
                        const T& wanted, const Limits<T>& limits, const Total& total, const Active& active,
@@ -199,7 +199,7 @@ struct ElectricalControl {
     return outside("Vcmd", regulated, c[vmin], c[vmax]);
   }
 
-  // Checks of the effects.
+  // Checks that the effects share.
   static std::string value(std::span<const Parameter> all, const double* p, int i) {
     const Parameter& r = all[static_cast<std::size_t>(i)];
     return fmt::format("{} = {:g}{}{}", r.symbol, p[i], r.is_code() ? "" : " ", r.is_code() ? "" : r.unit);

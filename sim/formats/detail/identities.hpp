@@ -18,12 +18,13 @@ class Identities {
   Identities(const RawOptions& options, network::Network& network, Problems& problems)
       : options_(options), network_(network), problems_(problems) {}
 
-  /// Returns the index of the bus with this number, or -1 if there is none. A missing bus is a problem, or a
-  /// remark if its equipment is to be dropped. `section`: section of the referring record.
+  /// Returns the index of the bus with this number, or -1 if there is none. A missing bus is a problem; with
+  /// RawOptions::drop_refused it is a remark, and the equipment must be dropped. `section`: section of the
+  /// referring record.
   int bus_index(const std::map<int, int>& buses, int number, const std::string& section,
                 const psse::Fields& fields);
-  /// Returns false if this identity ("bus 5") is a duplicate and the equipment must be dropped. A duplicate
-  /// is a problem, or a remark if it is to be dropped.
+  /// Registers an identity ("bus 5"). A duplicate is a problem; with RawOptions::drop_refused it is a remark.
+  /// Returns false in the latter case, in which the equipment must be dropped.
   bool once(const std::string& identity, const psse::Fields& fields);
   /// Returns the equipment's id: the given id if "`before` 'id'`after`" is unique, a new id for a duplicate
   /// that is kept, none for equipment to be dropped. `of`: kind and bus numbers of the equipment.
