@@ -30,7 +30,7 @@ record::StagedEvent staged_event(const Test& t, const plant::PlantModel& model, 
   return e;
 }
 
-/// Returns the windows in order of time; without an end of the event there is none during it.
+/// Returns the windows in order of time. An event without end has no window `during`.
 std::vector<compare::Window> windows_of(const Test& t, const Record& r) {
   const Interval pre = t.pre.value_or(Interval{r.t.front(), t.event}),
                  post = t.post.value_or(Interval{t.last(), r.t.back()});
@@ -43,7 +43,7 @@ std::vector<compare::Window> windows_of(const Test& t, const Record& r) {
   return all;
 }
 
-/// Adds a problem for each time of a test that its record does not contain.
+/// Adds a problem for the event and for each window of the tests file that reaches beyond the record.
 void check_windows(const Test& t, const Record& r, Problems& problems) {
   const double slack = r.step(), from = r.t.front(), to = r.t.back();
   const auto check = [&](double a, double b, const std::string& what) {
@@ -58,7 +58,8 @@ void check_windows(const Test& t, const Record& r, Problems& problems) {
   if (t.post) check(t.post->first, t.post->second, "window post");
 }
 
-/// Returns the record of a test: its windows and the times of its event.
+/// Returns the record from the first to the last window, with the switching times and the reference step of
+/// the test.
 Record record_of_test(const Test& t, const plant::PlantModel& model, Record r) {
   const auto windows = windows_of(t, r);
   r = record::stretch(std::move(r), windows.front().from, windows.back().to);
@@ -69,7 +70,7 @@ Record record_of_test(const Test& t, const plant::PlantModel& model, Record r) {
   return r;
 }
 
-/// Marks the samples outside of all windows, and lost ones.
+/// Returns 1 for each sample that is lost or outside all windows, otherwise 0.
 std::vector<char> outside_windows(const Record& r, const std::vector<compare::Window>& windows) {
   std::vector<char> out(r.t.size(), 0);
   const double slack = 1e-4 * r.step();
@@ -102,15 +103,16 @@ compare::ChannelComparison channel_of(const compare::ChannelRule& rule, const st
   return c;
 }
 
-/// Returns P or Q over V [pu of MVA at 1 pu of voltage]: the active or reactive current.
+/// Returns the active or reactive current, P/V or Q/V [pu of the plant's MVA]. `power`: P or Q [pu of the
+/// record's base]; `per_machine`: the plant's MVA over the record's base.
 std::vector<double> current_of(const std::vector<double>& power, const Record& r, double per_machine) {
   std::vector<double> current(power.size());
   for (std::size_t k = 0; k < power.size(); ++k) current[k] = power[k] / per_machine / r.V[k];
   return current;
 }
 
-/// Adds the active and the reactive current of a converter, which grid codes judge during a fault, unless the
-/// voltage is zero. They have no limits here.
+/// Adds the active and reactive current of a converter, because grid codes judge them during a fault. They
+/// have no limits here. Adds nothing if the voltage of a compared sample is zero.
 void add_currents(compare::EventComparison& e, double per_machine) {
   for (std::size_t k = 0; k < e.record.t.size(); ++k)
     if (!e.left_out[k] && !(e.record.V[k] > 0)) return;

@@ -12,9 +12,9 @@ namespace swingbank::validate::benchmark {
 struct TestResult {
   Test test;                                ///< the test
   compare::EventComparison event;           ///< reference ("measured") and model in the test's windows
-  std::vector<compare::JudgedErrors> rows;  ///< errors per channel and window; limits of P and Q only
-  compare::Fitness fitness;                 ///< verdict of P and Q by the limits
-  std::string failure;                      ///< why the model does not follow the test; empty: it does
+  std::vector<compare::JudgedErrors> rows;  ///< errors per channel and window; only P and Q have limits
+  compare::Fitness fitness;                 ///< verdict on P and Q against the limits
+  std::string failure;                      ///< why the simulation of the model failed; empty: it did not
   /// Whether the model passes.
   [[nodiscard]] bool passes() const { return failure.empty() && fitness.not_judged.empty() && fitness.fit; }
 };
@@ -36,8 +36,9 @@ std::string_view window_name(thresholds::Phase phase);
 /// Plays voltage and angle of each test's record into the model, and reference steps into its controls.
 /// Computes the errors of the response in the windows pre, during and post. The times of the event are known
 /// and exact; the operating point is the mean before the event. If the angle was integrated from a frequency,
-/// its steps at the event are fitted to P and Q. A test that the model cannot follow fails, with the reason.
-/// Throws InputError if a record does not contain a test's windows, or if the reference model cannot follow.
+/// its phase jumps at the event are fitted to P and Q. If the simulation of the model fails, the test fails
+/// and TestResult::failure contains the reason. Throws InputError if a record does not contain a test's
+/// windows, or if the simulation of the reference model fails.
 std::vector<TestResult> run_benchmark(const std::vector<Test>& tests, const BenchmarkInputs& inputs);
 
 /// Whether the model passes all tests.

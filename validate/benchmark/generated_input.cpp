@@ -19,7 +19,7 @@ record::Record generated_input(const Test& test, const InitialPoint& initial,
   const auto samples = static_cast<long>(std::floor(test.post->second * initial.rate + 1e-6)) + 1;
   for (long k = 0; k < samples; ++k) {
     const double t = static_cast<double>(k) / initial.rate;
-    // A sample at a switching time has the value before it.
+    // A sample at a switching time has the value before the switching.
     const bool on = t > test.event && t <= end;
     const double since = std::max(0.0, std::min(t, end) - test.event), after = std::max(0.0, t - end);
     double V = initial.V, theta = 0;

@@ -4,10 +4,10 @@
 
 namespace swingbank::validate::benchmark {
 
-/// Returns V and theta of the source from t = 0 to the end of the window `post`, and constant P and Q, those
-/// of the operating point. Voltage, frequency or angle change by `test.size` at `test.event`, exactly; a ramp
-/// of the frequency ends at `test.end`, and its frequency remains. `model`: bases of the record. Size and
-/// window must be given (find_records).
+/// Returns V and theta of the source from t = 0 to the end of the window `post`, with P and Q constant at the
+/// operating point. Voltage, frequency or angle changes by `test.size` exactly at `test.event` and returns at
+/// `test.end`. A frequency ramp keeps its final frequency after `test.end`. `model` supplies the bases of the
+/// record. `test.size` and `test.post` must be set, which find_records() checks.
 record::Record generated_input(const Test& test, const InitialPoint& initial, const plant::PlantModel& model);
 
 }  // namespace swingbank::validate::benchmark

@@ -42,7 +42,7 @@ std::string times_text(const Test& t) {
   return text;
 }
 
-/// Cell of one error: "0.42 of 5 %", with a star above the limit; without a limit "0.42 %".
+/// Cell of one error: "0.42 of 5 %", or "0.42 %" if there is no limit. A star marks an exceeded limit.
 report::Cell error_cell(double error, double limit, bool limited) {
   if (!std::isfinite(error)) return {"not finite *", 1.0};
   const std::string value = fmt::format("{:.3g}", std::abs(error) < 5e-5 ? 0.0 : error);
@@ -57,7 +57,7 @@ int count_passed(const std::vector<TestResult>& results) {
   return static_cast<int>(std::ranges::count_if(results, &TestResult::passes));
 }
 
-/// Returns the test with the largest error relative to its limit; null if the model follows none.
+/// Returns the test with the largest error relative to its limit; null if the simulation failed in all tests.
 const TestResult* worst_test(const std::vector<TestResult>& results) {
   const TestResult* worst = nullptr;
   for (const TestResult& r : results)
@@ -124,9 +124,10 @@ std::vector<double> in_units(std::vector<double> values, double scale, double sh
   return values;
 }
 
-constexpr std::size_t kChartPoints = 5000;  ///< most points of a curve: several for each pixel of a screen
+constexpr std::size_t kChartPoints = 5000;  ///< largest number of points per curve, several per screen pixel
 
-/// Returns the chart with every n-th sample, so that a page of long EMT records can be opened.
+/// Returns the chart with every n-th sample. A page with all samples of long EMT records would be too large
+/// for a browser.
 report::Curves thinned(report::Curves c) {
   const std::size_t every = c.x.size() / kChartPoints + 1;
   const auto thin = [every](std::vector<double>& values) {
@@ -148,7 +149,7 @@ report::Curves channel_chart(const TestResult& r, const compare::ChannelComparis
   return thinned(std::move(c));
 }
 
-/// Adds P and Q of the worst test side by side.
+/// Adds the charts of P and Q of one test side by side.
 void large_charts(report::Document& page, const TestResult& r, const std::string& reference) {
   page.subsection(fmt::format("{}: {}, {}", r.test.name, kind_name(r.test.kind), times_text(r.test)));
   page.add(report::Begin{report::Begin::Layout::large});

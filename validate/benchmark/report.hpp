@@ -8,7 +8,7 @@
 
 namespace swingbank::validate::benchmark {
 
-/// What the reports state beside the results.
+/// Information that the reports show in addition to the results.
 struct ReportContext {
   const plant::PlantModel& model;  ///< model under test
   std::string reference;           ///< "EMT records", or the name of the reference model
@@ -22,7 +22,7 @@ report::Table summary_table(const std::vector<TestResult>& results);
 /// Table of MXE, ME and MAE per test, channel and window [%], with their limits.
 report::Table error_table(const std::vector<TestResult>& results, const ReportContext& context);
 
-/// Terminal text: verdict, and the table of the tests; with `verbose` also that of the errors.
+/// Terminal text: verdict and table of the tests; with `verbose` also the table of the errors.
 std::string terminal_report(const std::vector<TestResult>& results, const ReportContext& context,
                             bool verbose);
 /// JSON of all errors and limits (docs/reference/benchmark.md).

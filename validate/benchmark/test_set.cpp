@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 struct KindRecord {
   std::string_view name, unit;
   double most;   ///< largest |size| [unit]
-  int sign;      ///< of the size; 0: either
-  bool has_end;  ///< the disturbance has an end
+  int sign;      ///< required sign of the size; 0: either
+  bool has_end;  ///< whether the key `end` is required
 };
 constexpr std::array<KindRecord, kTestKinds> kKinds = {{{"voltage_dip", "pu", 1, -1, true},
                                                         {"voltage_swell", "pu", 1, 1, true},
@@ -36,8 +36,8 @@ const KindRecord& record_of(TestKind kind) { return kKinds.at(static_cast<std::s
 
 constexpr std::array<std::string_view, 9> kKeys = {"name", "kind", "record", "event", "end",
                                                    "size", "pre",  "during", "post"};
-constexpr double kLatest = 1e5;         ///< [s]
-constexpr double kMostGenerated = 1e6;  ///< samples of a generated input
+constexpr double kLatest = 1e5;         ///< largest absolute time [s]
+constexpr double kMostGenerated = 1e6;  ///< largest number of samples of a generated input
 
 bool is_name(const std::string& name) {
   return !name.empty() && name.size() <= 100 &&
@@ -147,7 +147,8 @@ TestSet read_set(Config& c) {
   return set;
 }
 
-/// Returns the file of `given` with this name, or whose name without extension it is; empty if none.
+/// Returns the file of `given` with this name, else the file with this name without its extension; empty if
+/// there is none.
 std::string given_file(const std::vector<std::string>& given, const std::string& name) {
   for (const std::string& file : given)
     if (const record::Source source(file); source.is_named(name)) return file;
@@ -158,7 +159,7 @@ std::string given_file(const std::vector<std::string>& given, const std::string&
   return "";
 }
 
-/// Returns whether a plant control regulates Q; none: the plant has no plant control.
+/// Returns whether the plant control regulates Q (RefFlag = 0); empty if the plant has no plant control.
 std::optional<bool> regulates_q(const sim::plant::Plant& plant) {
   for (const auto& block : plant.controls) {
     if (block.effect->slot != sim::Slot::plant_control) continue;

@@ -38,10 +38,10 @@ struct Test {
   TestKind kind = TestKind::voltage_dip;        ///< disturbance
   double event = 0;                             ///< beginning of the disturbance [s of the record]
   std::optional<double> end = {};               ///< its end [s]; none: permanent
-  std::optional<double> size = {};              ///< [size_unit()]; of powers in pu of the plant's MVA
+  std::optional<double> size = {};              ///< change [size_unit()]; powers in pu of the plant's MVA
   std::optional<Interval> pre = {}, post = {};  ///< windows; none: the record before and after the event
   std::optional<Interval> during = {};          ///< window; none: from event to end, if there is an end
-  std::filesystem::path record = {};            ///< empty: the record with the test's name, or none
+  std::filesystem::path record = {};            ///< file of the record; empty: see find_records()
   std::string where;                            ///< place in the file, "tests.toml:12:1"
   /// Returns the end of the disturbance, or its beginning if it is permanent [s].
   [[nodiscard]] double last() const { return end.value_or(event); }
@@ -49,14 +49,14 @@ struct Test {
 
 /// Operating point of tests without a record, on the plant's MVA.
 struct InitialPoint {
-  double P = 0, Q = 0, V = 1;  ///< out of the plant [pu of MVA]; voltage [pu]
-  double rate = 0;             ///< samples of the generated input per second
+  double P = 0, Q = 0, V = 1;  ///< power out of the plant [pu of MVA]; voltage [pu]
+  double rate = 0;             ///< sampling rate of the generated input [1/s]
 };
 
 /// Tests of one file.
 struct TestSet {
-  std::filesystem::path file;           ///< the file
-  std::string name, source;             ///< name of the set; its source
+  std::filesystem::path file;           ///< tests file
+  std::string name, source;             ///< name of the set; origin of the tests
   std::vector<Test> tests;              ///< in the order of the file
   std::optional<InitialPoint> initial;  ///< none: every test needs a record
 };
@@ -65,16 +65,17 @@ struct TestSet {
 TestSet load_tests(const std::filesystem::path& file);
 /// Returns the JSON Schema of a tests file (base/describe.hpp).
 std::string tests_schema();
-/// Parses a tests file; `name` is the file in messages.
+/// Parses the text of a tests file; messages show `name` as the file.
 TestSet parse_tests(const std::string& text, const std::filesystem::path& name);
 
-/// Sets each test's record: its key `record` (a file of `given` with that name, else a path relative to the
-/// tests file), else the file of `given` whose name without extension is the test's. With `generate`, tests
-/// without a record keep none if the set has an operating point. Adds a problem for each test without input,
-/// and for each record that no test uses.
+/// Sets the record of each test. A test with the key `record` gets the file of `given` with that name, else
+/// the path relative to the tests file. A test without the key gets the file of `given` with the test's name.
+/// Names match with or without extension. With `generate`, a test without a file needs no record: its input
+/// is generated from the operating point, `size` and `post`. Adds a problem for each test without input, and
+/// for each file of `given` that no test uses.
 void find_records(TestSet& set, const std::vector<std::string>& given, bool generate, Problems& problems);
 
-/// Adds a problem for each test whose reference step acts on no control of the plant. `file`: the plant file.
+/// Adds a problem for each test whose reference step acts on no control of the plant.
 void check_controls(const TestSet& set, const plant::PlantModel& model, Problems& problems);
 
 }  // namespace swingbank::validate::benchmark
