@@ -49,7 +49,7 @@ class Check : Findings {
   }
 
  private:
-  /// Warns of rates below 25/s, the second lowest of IEC/IEEE 60255-118-1 (2018, 5.2).
+  /// Warns of reporting rates below 25/s, the second lowest rate of IEC/IEEE 60255-118-1 (2018, 5.2).
   void rate() {
     constexpr double kSlowestRate = 24.5;
     if (r_.component != record::Component::plant || r_.rate() >= kSlowestRate) return;
@@ -61,7 +61,8 @@ class Check : Findings {
   }
   static constexpr double kShortestChecked = 0.5;  ///< shortest record that the checks can interpret [s]
 
-  /// Checks that the channels are complete: records that were not read from a file may contain anything.
+  /// Returns whether the record is long enough and its channels are complete and finite. Otherwise adds
+  /// refusals. A record that was not read from a file may have any content.
   bool complete() {
     const std::size_t n = r_.t.size();
     if (r_.samples() < record::kMinSamples)
@@ -84,7 +85,7 @@ class Check : Findings {
   }
 
   void dropouts() {
-    // Reading has interpolated zeros between frames that continue as before: these are lost frames.
+    // The reader has already interpolated frames of zeros after which V, P and Q continue as before.
     std::size_t zeros = 0, first = 0;
     for (std::size_t k = 0; k < r_.t.size(); ++k)
       if (r_.V[k] == 0 && r_.P[k] == 0 && r_.Q[k] == 0 && zeros++ == 0) first = k;
@@ -132,7 +133,7 @@ class Check : Findings {
     constexpr double kMinBefore = 5, kLeastBefore = 0.1, kShort = 0.5;  // samples; s
     const double before = r_.t[signals_.onset] - r_.t.front(), n = static_cast<double>(signals_.onset + 1);
     const bool few = !signals_.slow && (n < kMinBefore || before < kLeastBefore);
-    // A short stretch before a step may be that of a fault, and a record without steps may begin in a swing.
+    // Few samples before a step may lie within a fault, and a record without steps may begin during a swing.
     const auto looked_at = signals_.slow ? static_cast<std::size_t>(kShort * r_.rate()) + 1 : signals_.onset;
     const bool doubtful = !few && (signals_.slow || before < kShort);
     const double moves = doubtful ? moves_within(looked_at) * machine_per_record() : 0;
@@ -161,23 +162,24 @@ class Check : Findings {
     return true;
   }
 
-  /// Returns the range of P or Q in the first samples beyond the noise [pu on the record's base].
+  /// Returns the larger range of P and Q in the first `samples`, less the range of the noise [pu on the
+  /// record's base].
   [[nodiscard]] double moves_within(std::size_t samples) const {
     double most = 0;
     for (const auto& [y, noise] : {std::pair{&r_.P, signals_.P.white}, {&r_.Q, signals_.Q.white}}) {
       const auto n = std::clamp<std::size_t>(samples, 1, y->size());
       const auto [low, high] = std::minmax_element(y->begin(), y->begin() + static_cast<std::ptrdiff_t>(n));
-      most = std::max(most, *high - *low - 4 * noise);  // range of noise alone in half a second
+      most = std::max(most, *high - *low - 4 * noise);  // 4 sigma: range of the noise in half a second
     }
     return most;
   }
-  /// Returns the median of V over the last second.
+  /// Returns the median of V over the last second [pu].
   [[nodiscard]] double last_voltage() const {
     const auto n = std::min(r_.V.size(), static_cast<std::size_t>(r_.rate()) + 1);
     return median_of({r_.V.end() - static_cast<std::ptrdiff_t>(n), r_.V.end()});
   }
 
-  /// Warns of the quantisation of a transducer or an archive.
+  /// Warns of quantisation by a transducer or an archive.
   void quantised() {
     const double scale = machine_per_record();
     for (const auto& [name, y, limit] :
@@ -193,8 +195,7 @@ class Check : Findings {
             "export it with more digits if possible");
   }
 
-  /// Checks that the powers are steady before the event: otherwise the model's initial equilibrium is not the
-  /// plant's.
+  /// Checks that P and Q are steady before the event, because the model starts in equilibrium.
   void steadiness() {
     for (const auto& [name, s] : {std::pair{"P", &signals_.P}, {"Q", &signals_.Q}}) {
       const double scale = machine_per_record();
@@ -231,7 +232,7 @@ class Check : Findings {
       refuse("voltage_unit", what, "that is off by sqrt(3)",
              v < 1 ? "if V is line to neutral, name the column V_kV_ln; base_kv is always line to line"
                    : "give base_kv line to line, or name the column V_kV if V is line to line");
-    else if (r_.base.kv > 1 && near(v, 1e3, 0.25))  // 1 kV: a case without a nominal voltage
+    else if (r_.base.kv > 1 && near(v, 1e3, 0.25))  // a case without nominal voltages has base_kv = 1
       refuse("voltage_unit", fmt::format("{}, with base_kv = {:g} kV", what, r_.base.kv),
              "that is a voltage in V taken as kV", "name the column V_V");
     else if (within(v, 70, 130))
@@ -250,7 +251,8 @@ class Check : Findings {
       refuse("voltage_unit", what, "a plant runs near 1 pu", "check the column of V, its unit and base_kv");
   }
 
-  /// Returns whether the ratio is that of 50 Hz and 60 Hz grids, relative to the model's nominal frequency.
+  /// Returns whether the frequency `ratio` [pu of the model's nominal frequency] is the other nominal
+  /// frequency, 50 or 60 Hz.
   [[nodiscard]] bool other_nominal(double ratio) const {
     const double other = std::abs(plant_.frequency - 60) < 5 ? 50.0 : 60.0;
     return near(ratio, other / plant_.frequency, 0.02);
@@ -306,9 +308,9 @@ class Check : Findings {
       refuse("speed_unit", what, "a machine runs near nominal speed", "give the speed in pu");
   }
 
-  /// Returns whether an angle beyond a full turn is in unwrapped radians, as simulations write it. Its rate
-  /// must equal the frequency, or, if that is not conclusive, its steps must be those at a machine's
-  /// terminals.
+  /// Returns whether an angle beyond a full turn is in unwrapped radians, as simulation programs write it.
+  /// Its rate must match the recorded frequency. If the frequency is not conclusive, the steps must match a
+  /// machine better in radians than in degrees.
   [[nodiscard]] bool radians_beyond_a_turn() const {
     if (const double ratio = signals_.angle_per_frequency; ratio > 0) return within(ratio, 0.5, 2);
     const int delay = power_delay(r_, steps_);
@@ -316,10 +318,11 @@ class Check : Findings {
     const record::Record other = reinterpreted([](const Reading& x) {
       return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
     });
-    // If the angle hardly steps, it fits in either unit, which is not conclusive.
+    // An angle that hardly steps fits in either unit and is not conclusive.
     return fits(radians) && 3 * radians.residual < fit_steps(other, steps_, delay).residual;
   }
-  /// Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
+  /// Returns whether the fit is that of a sound record: residual below 0.03 plus noise
+  /// (tests/validate/check/sound_test.cpp).
   [[nodiscard]] bool fits(const StepFit& fit) const {
     const double noise = noise_share(fit);
     return fit.reactance > 0 && noise < 0.1 && fit.residual < 0.03 + 3 * noise;
@@ -366,7 +369,7 @@ class Check : Findings {
            "check their units, and base_mva of the record and of the plant");
   }
 
-  /// Warns of doubtful signs, unless the steps of the phasors have decided.
+  /// Warns of doubtful signs of P and Q, unless the steps of the phasors have already given a finding.
   void signs() {
     if (found("swapped_channels") || found("q_sign") || found("power_sign")) return;
     if (const auto doubt = sign_doubt(r_, plant_, signals_.P.level, steps_, signals_.Q.white))
@@ -393,11 +396,10 @@ class Check : Findings {
       if (m.turn > 0 &&
           std::ranges::none_of(there, [&](const switching::StepInterval& j) { return turned(j) > m.turn; }))
         continue;
-      // Residual of sound records: below 0.03 in addition to noise (tests/validate/check/sound_test.cpp).
+      // The residual of sound records is below m.sound plus noise (tests/validate/check/sound_test.cpp).
       const bool sound =
           same.reactance > 0 && (same.residual < m.sound + 2 * noise || same.residual < 5 * fit.residual);
-      // Of two mistakes that explain the steps almost equally well, the first in the list is the more common
-      // one.
+      // If two mistakes explain the steps almost equally well, the first in the list is more common.
       if (!sound && fit.residual < least / 2) best = &m, least = fit.residual;
     }
     if (best && apart())
@@ -410,8 +412,8 @@ class Check : Findings {
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
   }
 
-  /// Returns whether the steps are consistent if each includes one more interval: after it, before it, or
-  /// both.
+  /// Returns whether the steps are consistent if each is extended by one sample interval before it, after it,
+  /// or on both sides. Voltage and current then step at different samples.
   [[nodiscard]] bool apart() const {
     constexpr std::array<std::pair<std::size_t, std::size_t>, 3> kWider = {{{1, 1}, {0, 1}, {1, 0}}};
     return std::ranges::any_of(kWider, [this](const auto& wider) {
@@ -423,14 +425,14 @@ class Check : Findings {
       return fit.reactance > 0 && noise < 0.1 && fit.residual < 0.03 + 2 * noise;
     });
   }
-  /// Returns the step of the angle as written [rad].
+  /// Returns the step of the angle as written in the record [rad].
   [[nodiscard]] double turned(const switching::StepInterval& j) const {
     const std::vector<double>& theta = r_.theta_as_written.empty() ? r_.theta : r_.theta_as_written;
     return std::abs(theta[j.after] - theta[j.before]);
   }
 
-  /// Returns the share of noise in the squared steps: a step combines four samples and has five times the
-  /// variance of one.
+  /// Returns the share of noise in the squared steps [-]. A step combines four samples (fit_steps), so its
+  /// variance is five times that of one sample.
   [[nodiscard]] double noise_share(const StepFit& fit) const {
     return 10 * square(signals_.V.white) / fit.voltage +
            5 * (square(signals_.P.white) + square(signals_.Q.white)) / fit.current;
@@ -450,7 +452,7 @@ class Check : Findings {
     return other;
   }
 
-  /// Checks X'': 0.1 to 0.4 pu in machines, with a step-up transformer up to 0.6.
+  /// Checks X'' [pu of the machine]: 0.1 to 0.4 pu in machines, up to 0.6 pu with a step-up transformer.
   void reactance(double x) {
     if (!(plant_.mva > 0) || within(x, 0.08, 0.8)) return;
     const BaseSlip* best = nullptr;

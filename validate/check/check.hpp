@@ -17,19 +17,18 @@ enum class Severity { refuse, warn };
 struct Finding {
   std::string kind;  ///< stable identifier: "too_short", "wrong_base", … (validate/check/README.md)
   Severity severity = Severity::refuse;  ///< refuse: the record allows no verdict
-  Problem problem;                       ///< sentence to the user
+  Problem problem;                       ///< message to the user
 };
 
-/// Facts of the plant that the checks use. Only certain ones, because a wrong parameter must not refuse a
-/// record.
+/// Facts of the plant that the checks use. Uncertain parameters are excluded: a wrong parameter must not
+/// cause a refusal.
 struct PlantFacts {
-  double mva = 0;           ///< the machine's base [MVA]
-  double frequency = 60.0;  ///< nominal [Hz]
-  bool synchronous = true;  ///< true: the current step follows from the machine's reactance; false: from a
-                            ///< converter's control
-  std::optional<sim::grid::Dispatch> dispatch = {};  ///< output of the unit in its case
+  double mva = 0;           ///< base of the machine [MVA]
+  double frequency = 60.0;  ///< nominal frequency [Hz]
+  bool synchronous = true;  ///< synchronous machine, whose reactance determines the current step
+  std::optional<sim::grid::Dispatch> dispatch = {};  ///< output of the unit in its power-flow case
 };
-/// Returns these facts of a model.
+/// Returns the facts of a model.
 PlantFacts plant_facts(const plant::PlantModel& model);
 
 /// Returns all findings about a record, refusals first. After a refusal, the record allows no verdict about

@@ -59,11 +59,12 @@ const std::vector<Hypothesis>& hypotheses() {
   return list;
 }
 
-/// Residual of the model as a share of the squared movement of P and Q about their steady state; none if the
-/// model cannot follow.
+/// Agreement of the simulated with the recorded P and Q.
 struct Fit {
+  /// Sum of the squared errors over that of the squared deviations from the steady state; empty: simulation
+  /// failed.
   std::optional<double> share;
-  double rms = 0;  ///< [pu of the record's base]
+  double rms = 0;  ///< RMS error [pu of the record's base]
 };
 
 class Readings {
@@ -118,7 +119,7 @@ class Readings {
     return {left / moved, std::sqrt(left / static_cast<double>(std::max(count, 1L)))};
   }
 
-  /// Tests delays of P and Q, with the same response of the model.
+  /// Tests delays of P and Q against the same simulated response.
   void delays(const playin::Playback& back) {
     constexpr double kLargestDelay = 0.5;  // s
     const auto most = static_cast<long>(std::min(kLargestDelay * r_.rate(), r_.samples() / 4.0));
@@ -136,7 +137,8 @@ class Readings {
           "shift their time stamps, if another clock or filter explains it"});
   }
 
-  /// Returns whether the scaled power is feasible for the machine, and closer to that of the case.
+  /// Returns whether the scaled power is feasible for the machine and, if the power-flow case is known,
+  /// closer to P of the case.
   [[nodiscard]] bool may_scale(const Hypothesis& h) const {
     double p = 0, q = 0;
     constexpr std::size_t kSteadySamples = 5;

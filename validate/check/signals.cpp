@@ -19,9 +19,10 @@ namespace {
 /// Median magnitude of second differences of Gaussian noise, per standard deviation: 0.6745 sqrt(1 + 4 + 1).
 constexpr double kMedianSecondDifference = 0.6745 * 2.449489742783178;
 
-/// Least-squares line through values at 0, 1, 2 …
+/// Least-squares line through values at the abscissae 0, 1, 2, …
 struct Line {
-  double middle = 0, slope = 0, standard_deviation = 0;  ///< standard deviation about the line
+  double middle = 0, slope = 0,
+         standard_deviation = 0;  ///< value in the middle; standard deviation about the line
 };
 Line fit_line(std::span<const double> y) {
   const auto n = static_cast<double>(y.size());
@@ -38,8 +39,8 @@ Line fit_line(std::span<const double> y) {
   return {mean, slope, n > 2 ? std::sqrt(square / (n - 2)) : 0.0};
 }
 
-/// Estimates white noise from second differences. Filtered noise changes slowly; only the standard deviation
-/// of the quietest second contains it.
+/// Estimates the noise of a channel. White noise is estimated from second differences. Filtered noise is too
+/// slow for them; it is estimated from the standard deviation of the quietest second.
 void find_noise(const std::vector<double>& y, double rate, SignalFacts& facts) {
   std::vector<double> second;
   for (std::size_t k = 1; k + 1 < y.size(); ++k) second.push_back(std::abs(y[k - 1] - 2 * y[k] + y[k + 1]));
@@ -57,8 +58,9 @@ std::span<const double> until(const std::vector<double>& y, std::size_t last) {
 }
 double median_in(std::span<const double> y) { return median_of(std::vector<double>(y.begin(), y.end())); }
 
-/// Returns the first sample at which the frequency, as the angle's change over half a second, has changed by
-/// more than 20 mHz and the noise: the earliest sign of a slow event. Returns the size if there is none.
+/// Returns the first sample at which the frequency has changed by more than 20 mHz and more than the noise;
+/// the number of samples if there is none. The frequency is the change of the angle over half a second. It is
+/// the first signal that shows a slow event.
 std::size_t turns_faster(const record::Record& r) {
   constexpr double kSpan = 0.5, kLeastDrift = constants::turn * 0.02;  // s, rad/s
   const auto m = static_cast<std::size_t>(kSpan * r.rate());
@@ -74,8 +76,9 @@ std::size_t turns_faster(const record::Record& r) {
   return k < turned.size() ? k + m : n;
 }
 
-/// Returns the first change of the voltage within half a second before a clear step that exceeds those before
-/// it. The event begins there if the step is filtered, or if an earlier one is too small to count.
+/// Returns the first sample within half a second before `first_step` at which the voltage changes by more
+/// than ten times the usual amount and 0.002 pu; `first_step` if there is none. A filtered step, or an
+/// earlier step below the threshold of find_steps(), begins there.
 std::size_t step_before(const record::Record& r, std::size_t first_step) {
   std::vector<double> steps;
   const std::vector<Complex> all = switching::voltage_steps(r);
@@ -87,8 +90,8 @@ std::size_t step_before(const record::Record& r, std::size_t first_step) {
   return first_step;
 }
 
-/// Finds the start of the event: the sample before the first step, or before a channel first leaves the noise
-/// about its first samples.
+/// Finds the start of the event: the sample before the first step. Without steps it is the sample before a
+/// channel first leaves the noise band around its first samples.
 void find_event(const record::Record& r, Signals& s) {
   const auto steps = switching::find_steps(r);
   const std::size_t n = r.t.size();
@@ -102,8 +105,8 @@ void find_event(const record::Record& r, Signals& s) {
   const std::pair<const std::vector<double>*, SignalFacts*> channels[] = {
       {&r.V, &s.V}, {&r.P, &s.P}, {&r.Q, &s.Q}};
   for (const auto& [y, facts] : channels) {
-    // Six standard deviations: pure noise stays below five in ten thousand samples. The floor covers rounding
-    // in records without noise.
+    // Six standard deviations: Gaussian noise stays below five in ten thousand samples. The minimum of 1e-4
+    // pu covers rounding in records without noise.
     const double reach = std::max(6 * facts->noise, 1e-4);
     first = std::min(
         first, switching::leaves(*y, {.level = median_in(std::span(*y).first(10)), .reach = reach * 1.1}));
@@ -114,9 +117,9 @@ void find_event(const record::Record& r, Signals& s) {
 }
 
 void describe(const record::Record& r, const std::vector<double>& y, const Signals& s, SignalFacts& facts) {
-  // Measuring windows extend across the event: exclude 50 ms before it.
+  // The measuring window of a PMU reaches across the event, so the last 50 ms before it are excluded.
   const auto guard = static_cast<std::size_t>(std::ceil(0.05 * r.rate()));
-  // A slow event is detected only some time after its start.
+  // A slow event begins before it is detected, so only the first half of the samples before it is used.
   const std::size_t clear = s.slow ? s.onset / 2 : s.onset > guard ? s.onset - guard : 0;
   const auto before = s.event ? until(y, clear) : std::span<const double>(y);
   facts.level = median_in(before);
@@ -129,7 +132,6 @@ void describe(const record::Record& r, const std::vector<double>& y, const Signa
   facts.drift_error = std::max(line.standard_deviation, facts.noise) * std::sqrt(12 / n);
 }
 
-/// Returns the differences of consecutive values.
 std::vector<double> differences(const std::vector<double>& y) {
   std::vector<double> steps;
   for (std::size_t k = 0; k + 1 < y.size(); ++k) steps.push_back(y[k + 1] - y[k]);
@@ -147,14 +149,14 @@ std::vector<double> smoothed(const std::vector<double>& y, std::size_t m) {
   return mean;
 }
 
-/// Returns the rate of the angle [pu of nominal frequency] over frequency or speed, if both clearly move
-/// together.
+/// Returns the ratio of the angle's rate [pu of nominal frequency] to the deviation of frequency or speed
+/// [pu]; 0 unless both are clearly correlated.
 double angle_per_frequency(const record::Record& r, const std::vector<double>& theta) {
   const std::vector<double>& f = r.f.empty() ? r.speed : r.f;
   if (f.size() != theta.size() || f.size() < 40) return 0;
   std::vector<double> rate = differences(theta), mid;
   for (double& v : rate) v /= r.step() * constants::turn * r.base.frequency;
-  // Steps and wraps of the angle are not rates: exclude the largest.
+  // Steps and wraps of the angle are no rates, so the largest 3 % are replaced.
   std::vector<double> size(rate.size());
   std::ranges::transform(rate, size.begin(), [](double v) { return std::abs(v); });
   std::vector<double> sorted = size;
@@ -189,7 +191,7 @@ void describe_angle(const record::Record& r, Signals& s) {
   s.angle_rate =
       median_in(s.event && s.onset >= 2 ? until(turns, s.onset - 1) : std::span<const double>(turns)) /
       r.step();
-  // Over 0.1 s, to suppress noise, or over half of a shorter record.
+  // The rate is taken over 0.1 s to suppress noise, but at most over half of the record.
   const auto apart = std::clamp<std::size_t>(static_cast<std::size_t>(0.1 * r.rate()), 1,
                                              std::max<std::size_t>(theta.size() / 2, 1));
   std::vector<double> fast;

@@ -1,5 +1,5 @@
 #pragma once
-// Common confusions of the four columns, tested if the steps of the record are inconsistent.
+// Common mistakes in the columns V, theta, P and Q, tested at the voltage steps of a record.
 #include <functional>
 #include <vector>
 
@@ -7,17 +7,17 @@
 
 namespace swingbank::validate::check {
 
-/// The four columns of a sample under an assumed mistake.
+/// Values of the four columns in one sample.
 struct Reading {
   double V, theta, P, Q;
 };
 using Reinterpret = std::function<Reading(const Reading&)>;
 
-/// Mistake whose correction may make inconsistent steps consistent.
+/// Mistake in the columns, with the correction that makes the steps consistent.
 struct Mistake {
   const char *kind, *why, *remedy;
   Reinterpret reinterpret;
-  double sound = 0.03;  ///< largest residual share with which the correction is accepted
+  double sound = 0.03;  ///< residual share below which the unchanged record is sound: no mistake is reported
   double turn = 0;      ///< smallest required step of the angle as written [rad]
 };
 inline const std::vector<Mistake>& mistakes() {
@@ -34,12 +34,13 @@ inline const std::vector<Mistake>& mistakes() {
        [](const Reading& x) {
          return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
        },
-       0.015, 0.1},  // if the angle hardly steps, no angle at all would fit nearly as well
+       0.015, 0.1},  // an angle that hardly steps fits in either unit
       {"angle_unit", "with theta in radians they fit", "name the column theta_rad",
        [](const Reading& x) {
          return Reading{x.V, x.theta / constants::degree, x.P, x.Q};
        },
-       0.006},  // too small an angle is hidden by larger steps of V; too large a one fits no sound record
+       0.006},  // low: steps of V hide an angle 57 times too small. It is safe: 57 times too large fits no
+                // record
       {"q_sign", "with the sign of Q changed they fit", "change the sign of Q",
        [](const Reading& x) {
          return Reading{x.V, x.theta, x.P, -x.Q};

@@ -36,7 +36,7 @@ std::vector<BaseSlip> base_slips(const record::Record& r, const PlantFacts& plan
 
 std::optional<Doubt> base_doubt(const record::Record& r, const PlantFacts& plant, Complex power) {
   constexpr double kLargestMachinePower = 1.6,
-                   kNoSlip = 100;  // pu of the machine; errors of units are factors of a thousand
+                   kNoSlip = 100;  // pu of the machine; a wrong unit changes P and Q by a factor near 1000
   const double on_machine = std::abs(power) * (plant.mva > 0 ? r.base.mva / plant.mva : 1.0);
   if (on_machine <= kLargestMachinePower) return std::nullopt;
   if (!r.per_unit_power && plant.mva > 0 && on_machine < kNoSlip) {
@@ -94,9 +94,10 @@ std::optional<Doubt> dispatch_doubt(const record::Record& r, const PlantFacts& p
 
 namespace {
 
-/// Returns the least change of Q with |V| at the steps [-], with P and Q in time, a sample late and a
-/// sample early; 0 if it is not above noise. Behind E'' and X'', Q = V (E'' cos(delta) - V) / X'': it falls
-/// where V rises if the two values of V together exceed E'', which is below 1.3 pu.
+/// Returns dQ/d|V| at the voltage steps [pu/pu], the smallest of three estimates: the step of Q over the same
+/// interval as V, over one more sample after it, and over one more sample before it. Returns 0 unless all
+/// three are positive and exceed the noise. Behind E'' and X'', Q = V (E'' cos(delta) - V) / X''. Q falls
+/// where V rises if the sum of the two values of V exceeds E'', which is below 1.3 pu.
 double change_of_Q(const record::Record& r, const std::vector<switching::StepInterval>& steps, double noise) {
   constexpr double kLargestE = 1.3, kSure = 5;  // pu; standard deviations
   double least = std::numeric_limits<double>::infinity();
@@ -119,7 +120,7 @@ double change_of_Q(const record::Record& r, const std::vector<switching::StepInt
 
 std::optional<Doubt> sign_doubt(const record::Record& r, const PlantFacts& plant, double P,
                                 const std::vector<switching::StepInterval>& steps, double noise) {
-  constexpr double kMotor = 0.05;  // pu of the machine; condensers take a few per cent
+  constexpr double kMotor = 0.05;  // pu of the machine; synchronous condensers draw a few per cent
   const double rises = change_of_Q(r, steps, noise);
   const bool with_V = rises > 0;
   const bool negative = plant.mva > 0 && P * r.base.mva < -kMotor * plant.mva &&

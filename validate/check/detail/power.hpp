@@ -1,5 +1,5 @@
 #pragma once
-// Plausibility of a record's power: its units, its base, and the unit that it belongs to.
+// Plausibility of a record's P and Q: physical units, MVA base, signs, and generating unit.
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace swingbank::validate::check {
 
-/// Returns whether x differs from target by at most the given fraction.
+/// Returns whether x differs from target by at most the fraction `share` of target.
 bool near(double x, double target, double share);
 
-/// Common error of scale in P and Q, with its remedy.
+/// Common error in the scale of P and Q, with its remedy.
 struct BaseSlip {
   double factor;  ///< true value = value * factor
   std::string why, remedy;
@@ -23,16 +23,16 @@ std::vector<BaseSlip> base_slips(const record::Record& record, const PlantFacts&
 struct Doubt {
   std::string what, why, remedy;
 };
-/// Returns why P + jQ before the event [pu on the record's base] exceeds the capability of the machine; none
-/// if it does not.
+/// Returns a doubt if P + jQ before the event [pu on the record's base] exceeds the capability of the
+/// machine.
 std::optional<Doubt> base_doubt(const record::Record& record, const PlantFacts& plant, Complex power);
-/// Returns the ratio to the unit's output in its case, with a possible cause, if it differs by more than
-/// usual redispatch explains.
+/// Returns a doubt, with a possible cause, if P + jQ before the event [pu on the record's base] differs from
+/// the unit's output in its power-flow case by more than a usual redispatch.
 std::optional<Doubt> dispatch_doubt(const record::Record& record, const PlantFacts& plant, Complex power);
 
-/// Returns why the signs of P and Q, or their order, are doubtful for a synchronous machine, from P before
-/// the event [pu on the record's base] and the steps of |V| and Q; none if they are not. `noise`: standard
-/// deviation of Q [pu on the record's base]. It needs no angle and no dispatch.
+/// Returns a doubt if the signs of P and Q of a synchronous machine seem reversed, or P and Q exchanged. Uses
+/// `P` before the event and the steps of |V| and Q, but no angle. `noise`: standard deviation of the noise of
+/// Q. `P` and `noise` are in pu on the record's base.
 std::optional<Doubt> sign_doubt(const record::Record& record, const PlantFacts& plant, double P,
                                 const std::vector<switching::StepInterval>& steps, double noise);
 
