@@ -4,11 +4,12 @@
 
 namespace swingbank::validate::event {
 
-/// Returns the model whose plant is the component and whose records supply the columns that the component
-/// needs; `whole` holds the whole plant. Warnings list the blocks left out.
+/// Returns the model of the component alone. `whole` keeps the whole plant, and `reading` requires the
+/// columns that the component needs. Warnings list the omitted blocks. Component::plant returns the model
+/// unchanged.
 plant::PlantModel component_model(plant::PlantModel model, record::Component component);
 
-/// Returns the whole plant, with the component's blocks as in the model.
+/// Returns the model of the whole plant, with the component's blocks taken from `model`.
 plant::PlantModel whole_model(plant::PlantModel model);
 
 }  // namespace swingbank::validate::event

@@ -26,7 +26,7 @@ switching::SwitchingOptions detection(const FitEventOptions& options, double mva
   return {.threshold = options.step_threshold, .shape = options.step_shape, .mva = mva};
 }
 
-/// Determines the operating point, after the filtered samples are known.
+/// Determines the operating point and the compared channels. The filtered samples must be known.
 void set_start(FitEvent& e, const FitEventOptions& options) {
   auto first = e.switchings;
   if (!e.filtered_samples.empty() && !first.empty()) {
@@ -45,7 +45,7 @@ void set_start(FitEvent& e, const FitEventOptions& options) {
   e.channels = playin::compared_outputs(e.record, options.measured_states);
 }
 
-/// Returns marks of the samples that are not compared.
+/// Returns 1 for each sample that is not compared, otherwise 0.
 std::vector<char> left_out(const FitEvent& e) {
   std::vector<char> marks = e.filtered_samples;
   marks.resize(e.record.t.size());

@@ -17,22 +17,23 @@ struct FitEventOptions {
   double pre_event = 1.0;  ///< length of the steady window of a record without switchings [s]
   switching::StepShape step_shape =
       switching::StepShape::either;  ///< either: determined from the records (step_shape_of)
-  double mva = 0;  ///< rating of all machines whose power the records contain; 0: the model's
+  double mva = 0;  ///< rating of all machines whose power the records contain [MVA]; 0: the model's
   /// P and Q of the model's operating point if the records contain the power of several units [pu on their
-  /// base]. The caller, who has the models of all units, then estimates the turns of an integrated angle.
+  /// base]. The caller, who has the models of all units, then estimates the phase jumps of an integrated
+  /// angle.
   std::optional<Complex> start = {};
 };
 
-/// Prepares the records of one plant and one instrument, without their noise (noise::whitened_events). Throws
-/// InputError if a record has no pre-event window.
+/// Prepares the records of one plant and one instrument. Their noise is estimated by
+/// noise::whitened_events(). Throws InputError if a record has no pre-event window.
 std::vector<FitEvent> prepare_events(const plant::PlantModel& model, std::vector<record::Record> records,
                                      const FitEventOptions& options = {});
-/// The part of the preparation that does not depend on the model's parameters: records with switching times
-/// and reconstructed voltage. `options.mva` is required if an angle was integrated. Throws InputError if a
-/// record has no angle.
+/// Returns the records with switching times and reconstructed voltage. This part of the preparation does not
+/// depend on the model's parameters. `options.mva` is required if an angle was integrated. Throws InputError
+/// if a record has no angle.
 std::vector<switching::SwitchedRecord> reconstructed_records(std::vector<record::Record> records,
                                                              const FitEventOptions& options);
-/// The rest of the preparation. Throws as prepare_events().
+/// Prepares the result of reconstructed_records(). Throws as the overload above.
 std::vector<FitEvent> prepare_events(const plant::PlantModel& model,
                                      std::vector<switching::SwitchedRecord> records,
                                      const FitEventOptions& options);

@@ -11,8 +11,8 @@
 
 namespace swingbank::validate::event {
 
-/// Cached voltage curve of an immutable event. Copies of the event may be changed, so a copy starts without
-/// it.
+/// Cached voltage curve of an event that does not change. A copy of the event may change, so it has no cached
+/// curve.
 class KeptCurve {
  public:
   KeptCurve() = default;
@@ -40,13 +40,13 @@ class KeptCurve {
 /// One event, prepared for fitting.
 struct FitEvent : switching::SwitchedRecord {
   playin::OperatingPoint start = {};  ///< operating point before the event
-  /// Marks samples that are not compared: the filtered ones, lost ones, and those next to a sharp switching,
-  /// where a delay of a millisecond may put a channel on the other side. Empty: none.
+  /// 1 for samples that are not compared: filtered samples, lost samples, and those next to a switching at an
+  /// uncertain time, where a delay of 1 ms may move a channel across the switching. Empty: all are compared.
   std::vector<char> left_out = {};
-  std::vector<playin::Output> channels = {};  ///< measured ones: P, Q, then speed, Efd, Ifd if recorded
-  KeptCurve kept = {};                        ///< of played() with `switchings`, see keep_curve()
-  /// Caches the voltage curve of an event that does not change any more. There is none if the voltage is
-  /// invalid: playing the event then reports the reason.
+  std::vector<playin::Output> channels = {};  ///< compared channels: P, Q, then speed, Efd, Ifd if recorded
+  KeptCurve kept = {};  ///< cached curve of played() with `switchings`, see keep_curve()
+  /// Caches the voltage curve of an event that does not change any more. An invalid voltage is not cached;
+  /// play() then reports the reason.
   void keep_curve();
   /// Returns the played-in voltage with the given switchings.
   [[nodiscard]] playin::VoltageCurve curve(std::vector<switching::Switching> at) const;
@@ -55,7 +55,7 @@ struct FitEvent : switching::SwitchedRecord {
   [[nodiscard]] Eigen::VectorXd collected(const std::vector<double>* values, bool less_measured) const;
   /// Returns the recorded samples of a channel, in the unit of Response.
   [[nodiscard]] const std::vector<double>& measured(playin::Output o) const;
-  /// Returns whether the angle turns by an unknown amount at each switching, because it was integrated from a
+  /// Returns whether the angle has an unknown phase jump at each switching, because it was integrated from a
   /// frequency.
   [[nodiscard]] bool turns() const;
   /// Returns the played-in record.

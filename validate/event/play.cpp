@@ -32,7 +32,7 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state) 
 
 namespace {
 
-/// Returns the run of an event; `curve` and `given` must outlive it.
+/// Returns the specification of the run; `curve` and `given` must outlive it.
 playin::PlaybackRun run_of(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                            const EventState& state, const Playing& how, const playin::VoltageCurve& curve,
                            const playin::Given* given) {

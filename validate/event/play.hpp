@@ -10,13 +10,13 @@
 
 namespace swingbank::validate::event {
 
-/// Unmodelled input, a free function of time.
+/// Unmodelled input of a plant, an arbitrary function of time.
 enum class InputKind { none, torque, field };
 
 /// Fitted quantities of one event.
 struct EventState {
-  std::vector<double> switchings;  ///< switching times [s]; empty: as they were found
-  std::vector<double> turns = {};  ///< of the angle at each of them [rad]; empty: as they were found
+  std::vector<double> switchings;  ///< switching times [s]; empty: those of the event
+  std::vector<double> turns = {};  ///< phase jumps at the switching times [rad]; empty: those of the event
   /// Offsets of the operating point [pu on the record's base] and of the initial angle [rad] and speed [pu].
   /// For an exciter or a governor, P is the offset of Efd or Pm, and the others are unused.
   double P = 0, Q = 0, angle = 0, speed = 0;        ///< [pu], [pu], [rad], [pu]
@@ -34,22 +34,23 @@ struct EventState {
 /// Options of a playback.
 struct Playing {
   double tolerance = 1e-5;  ///< error per step, relative to 1 + |state|
-  /// Accepts steps of a fortieth of the sample interval whatever their error: a limit that is met and left
-  /// within one sample does not justify shorter ones. Gives up after 15 steps per sample on average. False:
-  /// neither.
+  /// Accepts integration steps of 1/40 of the sample interval whatever their error. Shorter steps would only
+  /// resolve limits that are reached and left within one sample. Also fails after 15 steps per sample on
+  /// average.
   bool hasty = true;
   /// Relaxes the tolerance of each state according to its effect on the compared channels
   /// (playin::allowances).
   bool lenient = false;
-  /// Cache of these allowances for further playbacks of the same plant with other values. Empty: computed and
-  /// stored here. Null: computed each time.
+  /// Cache of these allowances for further playbacks of the same plant with other parameter values. Empty:
+  /// they are computed and stored here. Null: they are computed each time.
   std::vector<double>* allowance = nullptr;
-  std::vector<playin::Output> sensitive = {};  ///< outputs with sensitivities, beside the channels, P and Q
+  std::vector<playin::Output> sensitive =
+      {};  ///< outputs with sensitivities, in addition to channels, P and Q
   std::shared_ptr<const playin::TrajectoryCache>* cache = nullptr;  ///< as in playin::PlaybackRun
-  double until = 1e300;                                             ///< later samples are left out [s]
+  double until = 1e300;                                             ///< later samples are not simulated [s]
 };
 
-/// Returns the event's switchings at the switching times of `state`.
+/// Returns the event's switchings with the times and phase jumps of `state`.
 std::vector<switching::Switching> switchings_at(const FitEvent& event, const EventState& state);
 /// Returns the operating point with the offsets of `state`.
 playin::OperatingPoint start_at(const FitEvent& event, const EventState& state);
@@ -58,8 +59,8 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state);
 playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                       const EventState& state, std::span<const playin::SensitivityParameter> along = {},
                       const Playing& how = {});
-/// Returns the responses of several plants that differ in values only, computed in SIMD batches of eight
-/// (playin::simulate_playback_batch); an entry is empty where play() would throw.
+/// Returns the responses of several plants that differ in parameter values only, computed in SIMD batches of
+/// eight (playin::simulate_playback_batch). An entry is empty if play() would throw.
 std::vector<std::optional<playin::Response>> play_together(std::span<const sim::plant::Plant> plants,
                                                            const sim::Conventions& conventions,
                                                            const FitEvent& event, const EventState& state,
@@ -68,7 +69,7 @@ std::vector<std::optional<playin::Response>> play_together(std::span<const sim::
 /// Returns the derivative of each state's rate with respect to an input at the start [1/s per pu].
 Eigen::VectorXd rates_by_input(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                                const EventState& state, InputKind input);
-/// Returns the inputs of the plant's controls along the event, also at `times` [s] (playin::seen_along).
+/// Returns the inputs of the plant's controls during the event, also at `times` [s] (playin::seen_along).
 playin::SeenAlong seen_along(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                              const EventState& state, std::span<const double> times = {});
 

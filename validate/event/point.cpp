@@ -44,7 +44,7 @@ std::vector<Collector> read_collector(Config& c) {
   return all;
 }
 
-/// Part of the power of a unit; the unit under test has the remainder, and needs none.
+/// Reads the unit's part of the power. The unit under test has the remainder and needs no entry.
 OtherUnit read_part(Config& c, const std::string& at) {
   OtherUnit unit;
   unit.share = c.optional<double>(at + ".share", 0.0, {1e-6, 1.0, "", "share of P and Q before the event"});
@@ -151,7 +151,7 @@ record::Record behind_section(record::Record r, const Collector& z) {
   return r;
 }
 
-/// Returns two two-ports in series, beginning with the one at the plant.
+/// Returns the series connection of two two-ports; `first` is at the plant.
 sim::plant::TwoPort in_a_row(const sim::plant::TwoPort& first, const sim::plant::TwoPort& then) {
   return {then.a * first.a + then.b * first.c, then.a * first.b + then.b * first.d,
           then.c * first.a + then.d * first.c, then.c * first.b + then.d * first.d};
@@ -164,6 +164,7 @@ sim::plant::TwoPort across(const Collector& z, double mva) {
   return in_a_row({1 / z.ratio, 0, 0, z.ratio},
                   in_a_row(in_a_row({1, 0, -half, 1}, {1, -Z, 0, 1}), {1, 0, -half, 1}));
 }
+/// Returns whether a control of the plant measures at another bus.
 bool looks_far(const sim::plant::Plant& plant) {
   return std::ranges::any_of(plant.controls,
                              [](const auto& block) { return block.effect->elsewhere.bus >= 0; });
@@ -206,7 +207,7 @@ MeasuredPoint load_point(const std::filesystem::path& file, plant::PlantModel& t
 
 namespace {
 
-/// A unit behind the point, with the record prepared for its model.
+/// Unit behind the point, with the record prepared for its model.
 struct PreparedUnit {
   sim::plant::PlantUnderTest tested;
   Complex start;  ///< P and Q before the event [pu on the record's base]
@@ -216,7 +217,7 @@ struct PreparedUnit {
   }
 };
 
-/// Returns the rating of all machines behind the point [MVA], whose power shows the switchings.
+/// Returns the rating of all machines behind the point [MVA].
 double all_mva(const MeasuredPoint& point) {
   double mva = point.tried.plant.mva;
   for (const OtherUnit& unit : point.others) mva += unit.model.plant.mva;
@@ -230,7 +231,8 @@ FitEventOptions of_all(double mva) {
   return options;
 }
 
-/// Prepares a unit whose operating point is P + jQ = `start`, a part of the whole power `seen`.
+/// Prepares the event of one unit. `start`: its P + jQ before the event [pu on the record's base]; `seen`:
+/// record with the power of all units; `mva`: rating of all units [MVA].
 PreparedUnit prepare_unit(const plant::PlantModel& model, const record::Record& seen, double mva,
                           Complex start) {
   FitEventOptions options = of_all(mva);
@@ -240,10 +242,11 @@ PreparedUnit prepare_unit(const plant::PlantModel& model, const record::Record& 
   return unit;
 }
 
-/// Returns the residual of measured P and Q minus those of all units, until shortly after the switchings.
+/// Returns measured P and Q minus the simulated P and Q of all units [pu], until 0.5 s after the last
+/// switching.
 Eigen::VectorXd left_over(const std::vector<PreparedUnit>& units, const record::Record& whole,
                           const EventState& state) {
-  constexpr double kAfter = 0.5;  // [s]; later the models matter more than the switching times
+  constexpr double kAfter = 0.5;  // [s]; later, errors of the models exceed those of the switching times
   const FitEvent& event = units[0].event;
   const Playing how{.tolerance = 1e-7, .hasty = false, .until = event.switchings.back().time + kAfter};
   std::vector<playin::Response> responses;
@@ -259,8 +262,8 @@ Eigen::VectorXd left_over(const std::vector<PreparedUnit>& units, const record::
   return left;
 }
 
-/// Returns the least-squares step along `jacobian` within the bounds -1 to 1 of `at`: components that would
-/// leave them are clamped, and the others are solved again.
+/// Returns the least-squares step for the residual `left`, with `at` + step between -1 and 1. Components that
+/// would exceed a bound are clamped there, and the others are solved again.
 Eigen::VectorXd bounded_step(const Eigen::MatrixXd& jacobian, Eigen::VectorXd left,
                              const Eigen::VectorXd& at) {
   Eigen::VectorXd step = Eigen::VectorXd::Zero(at.size());
@@ -284,13 +287,13 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& jacobian, Eigen::VectorXd le
   return step;
 }
 
-/// Fits the switching times within their sample intervals, and the turns of an integrated angle, to the sum
-/// of all units (Gauss-Newton). An error of half an interval at 60 samples/s would cause an error of several
-/// per cent of the units' power during a fault.
+/// Fits the switching times within their sample intervals, and the phase jumps of an integrated angle, to the
+/// power of all units (Gauss-Newton). An error of half an interval at 60 samples/s would cause an error of
+/// several per cent of the units' power during a fault.
 EventState fit_switching_times(const std::vector<PreparedUnit>& units, const record::Record& whole) {
   constexpr int kPointRounds = 8;
   constexpr double kAside = 0.02,
-                   kPointSettled = 1e-4;  // fraction of the half interval, or of the largest turn
+                   kPointSettled = 1e-4;  // fraction of half a sample interval, or of kFarthestTurn
   const auto& switchings = units[0].event.switchings;
   const auto n = static_cast<Eigen::Index>(switchings.size() * (units[0].event.turns() ? 2 : 1));
   const auto state_at = [&](const Eigen::VectorXd& at) {
@@ -323,7 +326,8 @@ EventState fit_switching_times(const std::vector<PreparedUnit>& units, const rec
   return state_at(at);
 }
 
-/// Returns the models of the other units, then of the tested one, whose controls may measure at the point.
+/// Returns the models of the other units, then of the tested unit. Their controls that measure at another bus
+/// are set to measure at the point.
 std::vector<plant::PlantModel> models_at(const MeasuredPoint& point) {
   std::vector<plant::PlantModel> models;
   for (const OtherUnit& unit : point.others) {
@@ -348,7 +352,7 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
   record::Record seen = record;
   for (auto* channel :
        {&seen.speed, &seen.Efd, &seen.Ifd, &seen.Vs, &seen.Vref, &seen.Pm, &seen.Pref, &seen.gate})
-    channel->clear();  // channels of the tested unit only
+    channel->clear();  // these channels are those of the tested unit
   const double mva = all_mva(point);
   const Complex whole = mean_power(seen, samples_before_event(seen, of_all(mva)));
   const std::vector<plant::PlantModel> models =

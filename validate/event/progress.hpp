@@ -12,7 +12,7 @@ enum class Phase {
   // calibrate, and add
   model_as_it_is,   ///< each event with the original model
   parameter_sets,   ///< screening of drawn parameter sets
-  starts,           ///< fits from the best of them
+  starts,           ///< fits from the best parameter sets
   voltage_noise,    ///< correction for the noise of the played-in voltage
   fitted_model,     ///< each event with the fitted model
   sensitivities,    ///< identifiability of the parameters
@@ -21,7 +21,7 @@ enum class Phase {
   // sparse parameter selection
   every_parameter,    ///< fit of all parameters
   parameter_subsets,  ///< fits of growing sets
-  subsets_less_one,   ///< fits of the chosen set without one parameter
+  subsets_less_one,   ///< fits of the chosen set without each of its parameters in turn
   // diagnose, and add in part
   base,           ///< fit of the base model
   missing_input,  ///< inference of torque and field voltage
@@ -40,11 +40,11 @@ enum class Phase {
   pair_unseen_events,  ///< hold-out tests
 };
 
-/// Returns the user's words for a phase.
+/// Returns the name of a phase for messages.
 std::string_view phase_words(Phase phase);
 
 /// Callback with the phase, the current item (may be empty), and the numbers of completed and of all items.
-/// May be empty.
+/// The function may be empty.
 using Progress = std::function<void(Phase phase, const std::string& item, int done, int total)>;
 
 }  // namespace swingbank::validate::event

@@ -13,15 +13,15 @@
 namespace swingbank::validate::event {
 namespace {
 
-constexpr int kBehind = 3;           ///< samples after a switching that determine its turn
+constexpr int kBehind = 3;           ///< number of samples after a switching that determine its phase jump
 constexpr double kTurnFound = 1e-5;  ///< convergence tolerance [rad]
 constexpr int kTurnSteps = 12;
 
-/// Samples on each side for the extrapolation of f to the switching, and their minimum near another
+/// Number of samples on each side for the extrapolation of f to the switching, and its minimum near another
 /// switching.
 constexpr std::size_t kExtrapolationSamples = 4, kMinExtrapolationSamples = 2;
-constexpr double kPeakThreshold = 5;  ///< threshold of a peak in standard deviations of f's noise, and
-constexpr double kLeastPeak = 0.02;   ///< its minimum [Hz]
+constexpr double kPeakThreshold = 5;  ///< threshold of a peak of f [standard deviations of its noise]
+constexpr double kLeastPeak = 0.02;   ///< smallest threshold of a peak of f [Hz]
 
 /// Least-squares line through the samples [first, last) of f.
 struct Line {
@@ -44,13 +44,14 @@ std::size_t behind(const record::Record& r, double t) {
   return static_cast<std::size_t>(std::ranges::upper_bound(r.t, t) - r.t.begin());
 }
 
-/// Samples [from, to) around switchings, and the numbers of adjacent samples free of other switchings.
+/// Samples [from, to) around one or more switchings, and the numbers of samples before and after them that
+/// are used for extrapolation.
 struct Peak {
   std::size_t from, to, before, after;
 };
 
-/// Extrapolates f from the samples on either side up to `begin` and down to `end` [s]; linear between the
-/// two.
+/// Returns f at the samples of the peak: extrapolated from the samples before it until `begin`, and from
+/// those after it since `end` [s], with a straight line between.
 std::vector<double> extrapolate(const record::Record& r, const Peak& p, double begin, double end) {
   const auto [from, to] = std::pair(p.from, p.to);
   const Line before(r, from - p.before, from), after(r, to, to + p.after);
@@ -79,8 +80,8 @@ std::vector<std::size_t> samples_behind(const FitEvent& event, std::size_t switc
   return found;
 }
 
-/// Fits the turn to P and Q at these samples (Gauss-Newton). They depend on it along a circle, with one
-/// minimum.
+/// Returns the phase jump [rad] that fits P and Q of the first samples after the switching best
+/// (Gauss-Newton). P + jQ moves on a circle as the phase jump changes, so there is one minimum.
 double best_turn(const sim::plant::PlantUnderTest& tested, FitEvent& event, std::size_t switching) {
   const std::vector<std::size_t> samples = samples_behind(event, switching);
   if (samples.empty()) return 0.0;
@@ -144,7 +145,8 @@ void drop_peaks(FitEvent& event) {
   }
   if (!dropped) return;
   const std::vector<double> without = record::angle_of_frequency(r);
-  for (std::size_t k = 0; k < r.t.size(); ++k)  // keeps the change of the angle across a collector
+  for (std::size_t k = 0; k < r.t.size();
+       ++k)  // only the difference: theta may include the angle of a collector
     r.theta[k] += without[k] - with_peaks[k];
   r.notes.emplace_back(
       "The frequency has peaks at the switchings, where a meter smooths the step of the angle "
@@ -158,7 +160,7 @@ void find_turns(const sim::plant::PlantUnderTest& tested, FitEvent& event) {
     double turn = 0;
     try {
       turn = best_turn(tested, event, k);
-    } catch (const InputError&) {  // the model cannot follow; the fit reports it
+    } catch (const InputError&) {  // the simulation fails; the fit reports the reason
     }
     event.switchings[k].turn = turn;
   }

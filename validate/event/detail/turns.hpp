@@ -5,17 +5,20 @@
 
 namespace swingbank::validate::event {
 
-constexpr double kFarthestTurn = 0.5;  ///< bound of the search [rad]
+/// Largest phase jump of a fit at a common point, and largest step of a search [rad].
+constexpr double kFarthestTurn = 0.5;
 
-/// Removes the peaks of f that a step of the angle causes, as wide as the meter's window. Where f around a
-/// switching exceeds the prediction from the other samples of the same side, the prediction replaces it, and
-/// the angle is integrated again. Samples after a switching, where the prediction is uncertain, are left out.
-/// No effect if the angle was measured, or if a filter has spread the voltage, too.
+/// Removes the peaks of f that phase jumps cause over the width of the meter's window. If f around a
+/// switching deviates from the extrapolation of the samples on the same side, the extrapolation replaces f,
+/// and the angle is integrated again. The replaced samples after a switching are not compared, because the
+/// extrapolation is uncertain there. No effect if the angle was measured, or if the voltage steps are
+/// filtered, too.
 void drop_peaks(FitEvent& event);
 
-/// Estimates the turn of the angle at each switching by least squares of P and Q of the next samples,
-/// simulated by `tested`. It is a start for a fit: an error of a fifth in a reactance causes an error of a
-/// fifth in the turn. No effect if the angle was measured.
+/// Estimates the phase jump (Switching::turn) at each switching by least squares of P and Q of the next
+/// samples, simulated by `tested`; 0 if the simulation fails. The estimate is a start value for a fit: an
+/// error of 20 % in a reactance causes an error of 20 % in the phase jump. No effect if the angle was
+/// measured.
 void find_turns(const sim::plant::PlantUnderTest& tested, FitEvent& event);
 
 }  // namespace swingbank::validate::event
