@@ -146,7 +146,7 @@ class Calibrating {
   struct Start {
     std::string name;
     std::vector<double> values;
-    double before = 0;  ///< chi2
+    double before = 0;  ///< chi2 before the fit
   };
   using Starts = std::vector<Start>;
 
@@ -311,7 +311,8 @@ class Calibrating {
     return prior_information(model_.plant, plant, free_).asDiagonal();
   }
 
-  /// Computes errors, correlations, poorly identified directions and helpful further events.
+  /// Computes standard errors, correlations, unidentified combinations, and further events that identify
+  /// them.
   void learn() {
     std::vector<fit::EventSensitivities> jacobians(c_.prepared.size());
     in_parallel(
@@ -399,8 +400,8 @@ class Calibrating {
     }
   }
 
-  /// Adds the cost of the bias correction to the limits. The optimum had a lower chi-square, so this cost
-  /// does not indicate a missing effect.
+  /// Adds the chi-square increase of the bias correction to the limits. The correction leaves the optimum, so
+  /// the increase does not indicate a missing effect.
   void allow_correction() {
     double cost = 0, values = 0;
     for (std::size_t e = 0, seen = 0; e < after_.size(); ++e) {
@@ -477,13 +478,13 @@ class Calibrating {
   std::vector<bool> out_;
   std::vector<fit::FreeParameter> free_;
   std::vector<std::size_t> fitted_;  ///< indices of the events that are not held out
-  noise::WhitenedEvents seen_;       ///< these events
+  noise::WhitenedEvents seen_;       ///< events that are not held out
   std::vector<fit::EventFit> before_, after_;
   std::vector<double> allowance_;
   noise::VoltageNoise noise_;
   VoltagePull pull_;
   sim::plant::Plant whitened_through_;   ///< plant of the innovations filter
-  std::vector<fit::EventState> states_;  ///< of the fitted events during the bias correction
+  std::vector<fit::EventState> states_;  ///< states of the fitted events during the bias correction
   Eigen::VectorXd shift_;
   std::mutex reaching_;
   std::vector<fit::Fit> reached_;  ///< fits of all starts so far, including interrupted ones

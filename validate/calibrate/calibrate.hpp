@@ -28,7 +28,7 @@ struct CalibrateOptions {
   std::vector<GivenStart> given;              ///< starts in addition to the model's own values and the draws
   bool only_given = false;                    ///< use only `given` as starts and simulate no further events
   std::vector<fit::FreeParameter> free = {};  ///< with their priors; empty: chosen_parameters()
-  /// Least limit of the reduced chi-square; it allows for interpolation of the played-in voltage.
+  /// Smallest limit of the reduced chi-square. It allows for interpolation errors of the played-in voltage.
   double adequate = thresholds::adequacy.reduced_chi2;
   event::FitEventOptions events = {};  ///< preparation of the records
   event::Progress progress = {};       ///< recipient of progress messages; empty: none
@@ -41,7 +41,7 @@ struct ChannelScore {
   std::string unit;                      ///< unit of the errors
   double scale = 1;                      ///< units in 1 pu of the record's base
   double rms_before = 0, rms_after = 0;  ///< of model - measured [unit]
-  double over_noise = 0;                 ///< rms_after / standard deviation of the noise in the fit's weights
+  double over_noise = 0;  ///< rms_after / standard deviation of the noise by which the fit weights
 };
 /// Reduced chi-square of one event before and after the calibration.
 struct EventScore {
@@ -49,14 +49,14 @@ struct EventScore {
   bool seen = true;              ///< false: held out; only the event's own state was fitted
   double before = 0, after = 0;  ///< reduced chi-square
   double limit = 0;              ///< limit of the reduced chi-square
-  /// Part of `limit` beyond that of noise alone: uncertainty of the fitted parameters in a held-out event,
-  /// and cost of the correction for voltage noise.
+  /// Part of `limit` in addition to noise: uncertainty of the fitted parameters in a held-out event, and
+  /// chi-square increase of the correction for voltage noise.
   double allowance = 0;
   double colour = 0;                   ///< lag-1 autocorrelation of the pre-event residual
   std::vector<ChannelScore> channels;  ///< errors of each channel
   /// Whether the reduced chi-square after the calibration is within its limit.
   [[nodiscard]] bool adequate() const { return thresholds::within_limit(after, limit); }
-  /// Whether it is within the limit of noise alone.
+  /// Whether the reduced chi-square after the calibration is within the limit of noise alone.
   [[nodiscard]] bool is_noise() const { return thresholds::within_limit(after, limit - allowance); }
 };
 
@@ -84,8 +84,8 @@ struct CalibratedParameter {
   fit::FittedParameter fit;    ///< error and interval include the widening for coloured residuals
   double curvature_error = 0;  ///< standard error from the curvature alone, for white noise [unit]
   double shift = 0;            ///< correction applied for noise of the played-in voltage [unit]
-  int best_candidate = -1;     ///< index of the event that reduces the error most; -1: none by a fifth
-  double narrowed = 1;         ///< standard error with that event / without it
+  int best_candidate = -1;     ///< candidate that reduces the error most; -1: none reduces it by a fifth
+  double narrowed = 1;         ///< standard error with that candidate / without it
 };
 
 /// Verdict of a calibration.
@@ -97,9 +97,10 @@ enum class Adequacy {
 
 /// Result of one start of the search.
 struct StartScore {
-  std::string name;              ///< "closed form", "model", "network", "draw 3"
-  double before = 0, after = 0;  ///< reduced chi-square of the fitted events; infinite if it cannot be run
-  bool agrees = false;           ///< reached the best optimum
+  std::string name;  ///< "closed form", "model", "network", "draw 3"
+  double before = 0,
+         after = 0;     ///< reduced chi-square of the fitted events; infinite if the simulation fails
+  bool agrees = false;  ///< reached the best optimum
 };
 
 /// Result of a calibration.
@@ -113,30 +114,30 @@ struct Calibration {
   std::vector<UnidentifiedCombination> unidentified;  ///< parameter combinations that are not identified
   std::vector<Candidate> candidates;                  ///< simulated events of a further measurement
   std::vector<EventScore> events;                     ///< scores of all events, in the order given
-  double before = 0, after = 0, limit = 0;            ///< reduced chi-square of the fitted events
+  double before = 0, after = 0, limit = 0;            ///< reduced chi-square of the fitted events; its limit
   int starts = 0, agreeing = 0;         ///< number of refined starts; number that reached the best optimum
   std::vector<StartScore> started;      ///< each refined start, in the order tried
   bool converged = false;               ///< the search ended at a minimum
   double voltage_noise = 0;             ///< share of the pre-event variation of V that is instrument noise
   fit::Fit fit;                         ///< fit of the events that are not held out
-  std::vector<fit::EventState> states;  ///< of every event, at the fitted parameters
+  std::vector<fit::EventState> states;  ///< state of every event at the fitted parameters
   noise::WhitenedEvents prepared;       ///< every event, in the order given
-  double seconds = 0;                   ///< processing time [s]
+  double seconds = 0;                   ///< elapsed time [s]
 };
 
 /// Calibrates `model` on the records that are not held out. Throws InputError: no events, unknown names in
-/// `held_out` or `fixed`, all events held out, records without a pre-event, or a model without a steady state
-/// at its operating point.
+/// `held_out` or `fixed`, all events held out, records without a pre-event window, or a model without a
+/// steady state at its operating point.
 Calibration calibrate(const plant::PlantModel& model, std::vector<record::Record> records,
                       const CalibrateOptions& options);
 
-/// Returns the plant's free parameters and the invertible instrument errors, without those in `fixed`
-/// ("GENROU.Xl" or "Xl"). Throws InputError: unknown names, or no free parameter.
+/// Returns the free parameters of the plant and of the instruments whose error can be inverted, without those
+/// in `fixed` ("GENROU.Xl" or "Xl"). Throws InputError: unknown names, or no free parameter.
 std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant, double prior_sd,
                                                   const std::vector<std::string>& fixed);
 
-/// Returns one flag per record: true where `names` holds its name (with or without extension) or its number
-/// from 1. Throws InputError: no record, unknown names, or every record held out.
+/// Returns one flag per record: true if `names` contains its name (with or without extension) or its number,
+/// counted from 1. Throws InputError: no record, unknown names, or every record held out.
 std::vector<bool> held_out_events(const std::vector<record::Record>& records,
                                   const std::vector<std::string>& names);
 /// Returns the records that are not held out. Throws InputError as held_out_events().
@@ -152,14 +153,16 @@ int pre_event_samples(const noise::WhitenedEvents& events);
 double reduced_chi2_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event,
                           double least);
 
-/// Returns what parameter uncertainty adds to the reduced chi-square of a held-out event: the mean plus 3.09
-/// standard deviations. The probability of exceeding it is about 0.001 if many directions are uncertain, and
-/// about 0.02 if one direction dominates (a single square has a longer tail). `information` is that of the
-/// event, `covariance` that of the parameters, in the same units.
+/// Returns the increase of a held-out event's reduced chi-square by parameter uncertainty: its mean plus 3.09
+/// standard deviations. It is exceeded with probability 0.001 if many parameter combinations are uncertain,
+/// and with about 0.02 if one dominates, because a single squared Gaussian has a longer tail. `information`:
+/// Fisher information of the event; `covariance`: covariance of the parameters, in the same units; `values`:
+/// number of compared values.
 double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& covariance, int values);
 
-/// Returns the clause on the residual of adequate events: "the residual is noise" or, if an event exceeds the
-/// limit of noise alone, that it is within the uncertainty of the fitted parameters, with the figures.
+/// Returns the clause on the residual of adequate events: "the residual is noise". If an event exceeds the
+/// limit of noise alone, the clause states instead that the residual is within the uncertainty of the
+/// parameters.
 std::string residual_text(const std::vector<EventScore>& events);
 
 /// Returns the reduced chi-square and channel errors of one event before and after. Both fits must use the

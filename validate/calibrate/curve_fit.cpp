@@ -89,8 +89,8 @@ fit::EventFit as_played(const Setting& setting, const sim::plant::Plant& plant,
   return f;
 }
 
-/// Returns the inverse over the parameters with non-zero sensitivity; infinite for the others, or for all if
-/// the remaining matrix is singular.
+/// Returns the inverse for the parameters with non-zero sensitivity. The elements of the other parameters are
+/// infinite; all elements are infinite if the remaining matrix is singular.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& curvature) {
   std::vector<Eigen::Index> moving;
   for (Eigen::Index i = 0; i < curvature.rows(); ++i)
@@ -185,7 +185,8 @@ class CurveFitting {
       if (!out_[e]) ended.reached.values += events_[e].values();
     throw ended;
   }
-  /// Computes intervals as such tools do: from curvature and residual variance, for white noise.
+  /// Computes intervals from curvature and residual variance, for white noise, as parameter derivation tools
+  /// do.
   void intervals() {
     const auto n = static_cast<Eigen::Index>(free_.size());
     Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(n, n);
@@ -210,7 +211,7 @@ class CurveFitting {
       add_parameter(i, std::sqrt(covariance(at, at)));
     }
   }
-  /// `error`: relative standard error.
+  /// Adds parameter i to the result. `error`: standard error relative to the start value.
   void add_parameter(std::size_t i, double error) {
     const auto& record = sim::plant::parameter_record(fit_.model.plant, free_[i].id);
     fit::FittedParameter p;

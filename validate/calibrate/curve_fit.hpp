@@ -1,8 +1,8 @@
 #pragma once
 // Baseline: plain least squares of P and Q from the model's own values, as parameter derivation tools do it
-// (EPRI's PPPD, MATLAB's lsqnonlin). It shares the model, its instruments and the playback with `calibrate`,
-// and nothing else. Switching times lie half-way between samples, and every event starts at its pre-event
-// mean. All samples have equal weight, there are no priors but bounds, and there is one start.
+// (EPRI's PPPD, MATLAB's lsqnonlin). It shares only the model, its instruments and the playback with
+// `calibrate`. Switching times lie half-way between samples, and every event starts at its pre-event mean.
+// All samples have equal weight. There are bounds but no priors, and there is one start.
 #include <functional>
 #include <string>
 #include <vector>
@@ -20,20 +20,21 @@ struct CurveFitOptions {
   double adequate = thresholds::adequacy.reduced_chi2;  ///< as CalibrateOptions::adequate
 };
 
-/// Result of an unweighted least-squares fit of P and Q, for comparison with such tools.
+/// Result of an unweighted least-squares fit of P and Q.
 struct CurveFit {
   plant::PlantModel model;  ///< with the fitted values
-  /// Intervals from \f$ s^2 (J^T J)^{-1} \f$ with \f$ s^2 = RSS / (values - parameters) \f$, as such tools
-  /// report them; infinite where \f$ J^T J \f$ is singular.
+  /// Fitted parameters. Their intervals come from \f$ s^2 (J^T J)^{-1} \f$ with \f$ s^2 = RSS / (values -
+  /// parameters) \f$, as parameter derivation tools report them; infinite where \f$ J^T J \f$ is singular.
   std::vector<fit::FittedParameter> parameters;
-  std::vector<EventScore> events;        ///< with prepared switching times and start, which are not fitted
-  double rms_before = 0, rms_after = 0;  ///< of P and Q over the fitted events [pu on the record's base]
-  /// Reduced chi-square of the fitted events; largest limit of one of them.
-  double before = 0, after = 0, limit = 0;   ///< before and after the fit; limit
+  std::vector<EventScore> events;  ///< with prepared switching times and start, which are not fitted
+  double rms_before = 0,
+         rms_after = 0;  ///< RMS error of P and Q in the fitted events [pu on the record's base]
+  /// Reduced chi-square of the fitted events before and after the fit; largest limit of these events.
+  double before = 0, after = 0, limit = 0;
   int iterations = 0;                        ///< number of iterations
   bool converged = false, adequate = false;  ///< adequate: every event within its limit
   std::string sentence;                      ///< result in words
-  double seconds = 0;                        ///< processing time [s]
+  double seconds = 0;                        ///< elapsed time [s]
 };
 
 /// Fits the records that are not held out. Throws InputError as calibrate().

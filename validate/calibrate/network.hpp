@@ -39,9 +39,9 @@ struct NetworkEstimate {
 NetworkEstimate read_estimate(const std::filesystem::path& file);
 
 /// Returns the plant with the network's estimates, clamped to each parameter's search range. Throws
-/// InputError: the network was trained for another machine model or for an effect that the plant lacks, or
-/// the plant's value lies more than three prior standard deviations (`prior_sd`, relative) outside the range
-/// or constant of the training.
+/// InputError: the network was trained for another machine model or for an effect that the plant lacks, or a
+/// value of the plant is more than three prior standard deviations (`prior_sd`, relative) away from the range
+/// or constant value in the training data.
 sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::PlantModel& model,
                                   double prior_sd);
 

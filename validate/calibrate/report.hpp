@@ -9,7 +9,7 @@
 
 namespace swingbank::validate::calibrate {
 
-/// Table of parameters: start, value, standard error, 95 % interval, share determined by the records.
+/// Table of parameters: start, value, standard error, 95 % interval, variance reduction by the records.
 report::Table parameter_table(const Calibration& c);
 /// Returns the use of an event: "fit" or "verification".
 std::string use_name(const EventScore& e);
@@ -24,9 +24,9 @@ nlohmann::json calibration_json(const Calibration& c);
 nlohmann::json event_json(const EventScore& e);
 /// Origin of the values, for the head comment of the plant file.
 std::vector<std::string> provenance_lines(const Calibration& c, const std::string& command_line);
-/// Returns the verdict in the JSON.
+/// Returns the name of the verdict, as in the JSON.
 std::string adequacy_name(Adequacy adequacy);
-/// Sentence that describes a poorly identified direction.
+/// Sentence that describes an unidentified parameter combination.
 std::string describe(const Calibration& c, const UnidentifiedCombination& combination);
 
 }  // namespace swingbank::validate::calibrate

@@ -12,9 +12,10 @@ namespace swingbank::validate::calibrate {
 /// Half width of a response's 95 % band: [event][name of a fitted channel][sample] [pu].
 using ResponseBands = std::vector<std::map<std::string, std::vector<double>>>;
 
-/// Computes the bands at the fitted model from the curvature of the events that are not held out, with the
-/// priors of `free`, for all events. Where the residuals exceed noise, the bands are wider by the square root
-/// of the reduced chi-square. Throws InputError if the model cannot follow a record.
+/// Computes the bands of all events at the fitted model. The covariance of the parameters is the inverse of
+/// the curvature of the events that are not held out, plus the priors of `free`. If the residuals exceed
+/// noise, the bands are wider by the square root of the reduced chi-square. Throws InputError if playback of
+/// a record fails.
 ResponseBands response_bands(const plant::PlantModel& fitted, const std::vector<record::Record>& records,
                              const std::vector<fit::FreeParameter>& free, const CalibrateOptions& options);
 

@@ -52,7 +52,7 @@ double reduced_chi2_limit(const event::FitEvent& event, const fit::EventFit& fit
       1;  // variance of a sum of squares of coloured noise / that of white noise (Bartlett)
   const int n = std::max(2, event.start.samples);
   for (const double r : correlations(event, fitted))
-    variance_ratio += 2 * std::max(0.0, r * r - 1.0 / n);  // 1/n is the expectation for white noise
+    variance_ratio += 2 * std::max(0.0, r * r - 1.0 / n);  // 1/n: expectation of r^2 for white noise
   const double samples = 2 * variance_ratio / event.values();
   const double estimate =
       2 * variance_ratio / (static_cast<double>(event.channels.size()) * std::max(1, pre_event - 1));

@@ -21,8 +21,8 @@ using Truth = std::map<std::string, double>;
 Truth read_truth(const std::filesystem::path& file, const plant::PlantModel& model);
 
 /// Estimate by one method, with the reduced chi-square of every event. Switching times and start of each
-/// event are fitted anew, so that methods differ in parameters only. The curve fit's own report is the
-/// exception.
+/// event are fitted for each method, so that methods differ in parameters only. Only the separate report of
+/// the curve fit uses the prepared ones.
 struct Way {
   std::string name;  ///< name of the method
   /// Estimate of one parameter.
@@ -31,7 +31,7 @@ struct Way {
     double value = 0, low = 0, high = 0;  ///< estimate and 95 % interval [unit]
   };
   std::vector<Value> values;       ///< estimates of all parameters
-  std::vector<EventScore> events;  ///< `after`: with these values
+  std::vector<EventScore> events;  ///< scores of all events; `after` is that with `values`
 };
 /// The model's own values, without intervals.
 Way way_of_model(const Calibration& c);
@@ -39,9 +39,9 @@ Way way_of_model(const Calibration& c);
 Way way_of(const Calibration& c);
 /// The curve fit's parameters, evaluated on the calibration's events.
 Way way_of(const CurveFit& f, const Calibration& c);
-/// The network's estimates that vary in training, with intervals of ±1.96 times its validation error. `plant`
-/// is the plant with these estimates (estimated_plant()). The reduced chi-square is infinite where that plant
-/// cannot follow an event.
+/// The network's estimates of the parameters that varied in training, with intervals of ±1.96 times the RMS
+/// error on validation records. `plant` is the plant with these estimates (estimated_plant()). The reduced
+/// chi-square of an event is infinite if the simulation of that plant fails.
 Way way_of(const NetworkEstimate& estimate, const sim::plant::Plant& plant, const Calibration& c);
 
 /// Error of an estimate over the parameters whose true value is known.

@@ -23,8 +23,8 @@ struct WrongParameters {
 WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<record::Record> records,
                                  const CalibrateOptions& options);
 
-/// "GENROU.Xd 1.44 -> 1.80 pu (or GENROU.Tdop: the records cannot tell)" for each parameter, or that none
-/// must change.
+/// Returns the result as a sentence, with "GENROU.Xd 1.44 -> 1.80 pu (or GENROU.Tdop: not distinguishable)"
+/// for each parameter that must change.
 std::string wrong_sentence(const fit::SparseSelection& found, double adequate);
 /// The sentence and a table: old and new value, interval, evidence, and share of the error.
 std::string wrong_text(const WrongParameters& w);

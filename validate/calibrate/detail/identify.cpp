@@ -16,7 +16,7 @@ namespace {
 constexpr double kTriedSeconds = 20.0;  ///< length of a simulated event [s]
 constexpr double kAt = 2.0;             ///< start of its disturbance [s]
 
-/// Builder of an event of the same plant at the same operating point with a given voltage.
+/// Builder of simulated events with a given voltage, at the operating point of a recorded event.
 class Trial {
  public:
   Trial(const event::FitEvent& like, const std::vector<double>& switchings) : event_(like) {
@@ -32,7 +32,8 @@ class Trial {
     event_.filtered_samples.clear();
     event_.left_out.clear();
   }
-  /// `voltage(t)`: V as a multiple of the operating point's; `frequency(t)`: frequency deviation [Hz].
+  /// Returns the event. `voltage(t)`: V relative to that of the operating point; `frequency(t)`: frequency
+  /// deviation [Hz].
   template <class V, class F>
   event::FitEvent with(V voltage, F frequency) {
     record::Record& r = event_.record;
@@ -129,7 +130,7 @@ std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
                                    const std::vector<fit::FreeParameter>& free) {
   std::vector<TriedEvent> tried;
   const event::FitEvent& like = events.front();
-  // the further inputs of a component or a staged test would have to be invented
+  // The additional inputs of a component or a staged test (Vref, Pref) are unknown in a simulated event.
   if (like.record.component != record::Component::plant || !like.record.staged.empty()) return tried;
   const auto learnt = [&](const event::FitEvent& event, noise::EventNoise noise,
                           const fit::EventState& state) {

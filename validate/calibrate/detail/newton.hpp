@@ -9,8 +9,8 @@ namespace swingbank::validate::calibrate {
 Eigen::VectorXd off_prior(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
                           const std::vector<fit::FreeParameter>& free);
 
-/// Returns the information of each prior per axis_unit() of `plant`. It is 1 where the fit varies the
-/// logarithm; elsewhere the prior keeps the width that it has at the value of `believed`.
+/// Returns the information of each prior per axis_unit() of `plant`. It is 1 if the fit varies the logarithm
+/// of the parameter. Otherwise the prior keeps the standard deviation that it has at the value in `believed`.
 Eigen::VectorXd prior_information(const sim::plant::Plant& believed, const sim::plant::Plant& plant,
                                   const std::vector<fit::FreeParameter>& free);
 
@@ -18,12 +18,12 @@ Eigen::VectorXd prior_information(const sim::plant::Plant& believed, const sim::
 sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit::FreeParameter>& free,
                           const Eigen::VectorXd& step);
 
-/// Quasi-Newton correction of steps whose curvature is only the expected one (Fisher scoring). Secant updates
-/// use the steps taken so far (Broyden, Math. Comput. 19, 1965, p. 577).
+/// Quasi-Newton correction of Fisher scoring steps, which use the expected instead of the observed curvature.
+/// Secant updates use the steps taken so far (Broyden, Math. Comput. 19, 1965, p. 577).
 class Secants {
  public:
   explicit Secants(Eigen::Index n) : inverse_(Eigen::MatrixXd::Identity(n, n)) {}
-  /// Returns the corrected step for `plain`, the step by the expected curvature.
+  /// Returns the corrected step for `plain`, the Fisher scoring step.
   Eigen::VectorXd step(const Eigen::VectorXd& plain);
   /// Records the step that was actually taken.
   void taken(const Eigen::VectorXd& step) { taken_ = step; }
