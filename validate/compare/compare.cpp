@@ -55,9 +55,9 @@ bool is_noiseless(const plant::PlantModel& model, const EventComparison& e) {
   return least(e.record.P, e.playback.P) && least(e.record.Q, e.playback.Q);
 }
 
-/// Adds the interpolation error of the played-in voltage, which dominates in records without noise. It is a
-/// third of the change of the response when every second sample is omitted, for an error of second order in
-/// the step (Richardson).
+/// Adds the interpolation error of the played-in voltage, which dominates in records without noise. The error
+/// is of second order in the sample interval. It is estimated as a third of the change of the response when
+/// every second sample is omitted (Richardson extrapolation).
 void add_interpolation(const plant::PlantModel& model, const playin::PlayInOptions& options,
                        EventComparison& e) {
   if (e.record.component != record::Component::plant || !is_noiseless(model, e)) return;
@@ -288,7 +288,7 @@ ChannelComparison compare_channel(const ChannelRule& channel, const std::vector<
   auto seen = bridged(c.residual, event.left_out);
   const std::span<const double> all(seen);
   const auto doubt = event.doubt.find(channel.name);
-  // Quantisation hides noise, so its variance step^2 / 12 is the least variance.
+  // Quantisation hides noise, so the variance of the noise is at least step^2 / 12.
   const double step = record::quantum(measured), hidden = step * step / 12 - c.noise * c.noise;
   const double floor = std::hypot(channel.floor, std::sqrt(std::max(0.0, hidden)));
   const auto noise = estimate_noise(all.first(static_cast<std::size_t>(quiet)), floor);
@@ -387,7 +387,8 @@ EventComparison compare_event(const plant::PlantModel& model, const Measurement&
     measure_channels(model, PlaybackInput::voltage, options.play_in, other);
     return other;
   };
-  // the start is fitted only if residuals are then within noise; an incomplete model would bias it
+  // The initial state is fitted only if the residuals are then within noise; an incomplete model would bias
+  // it.
   const auto fitted = [&] {
     const auto events = noise::with_noise(
         model, event::prepare_events(model, {measurement.switched()}, measurement.preparation()));
@@ -431,7 +432,7 @@ EventComparison compare_event(const plant::PlantModel& model, const Measurement&
     e.prepared = std::make_shared<const event::FitEvent>(std::move(prepared));
   }
   explain(e, step_shape, options.fit_switchings && !no_angle, failed);
-  if (options.input == PlaybackInput::power) {  // with the switching times found by the voltage
+  if (options.input == PlaybackInput::power) {  // with the switching times detected in the voltage
     if (!no_angle) play(model, PlaybackInput::power, options.play_in, e);
     e.notes.push_back(
         "P and Q are played in, and no network holds the angle. A small lasting error of P "

@@ -30,7 +30,7 @@ struct ChannelComparison {
   double noise = 0;                  ///< standard deviation of the pre-event residual [pu]; 0: no noise found
   WindowError whole;                 ///< the whole record
   std::vector<WindowError> windows;  ///< one per window of the event
-  ErrorMap map;                      ///< per window and band; judge() sets its bounds
+  ErrorMap map;                      ///< errors per window and band; judge() sets the bounds
   bool judged = true;                ///< the channel counts for the verdict
   double size = 1;                   ///< nominal value: the machine's MVA for a power, else 1 [pu]
 };
@@ -48,14 +48,15 @@ struct EventComparison {
   std::vector<Window> windows;              ///< evaluation windows, in order of time
   playin::Playback playback;                ///< response of the model
   std::vector<ChannelComparison> channels;  ///< P, Q or V, frequency; speed, Efd, Ifd where recorded
-  /// Marks samples within a filtered step of the instrument, which are not compared. Empty: none.
+  /// 1 for samples that are not compared: lost samples, and samples within a step that the instrument
+  /// filtered. Empty: all samples are compared.
   std::vector<char> left_out = {};
-  /// Per channel: possible residuals due to errors of the played-in quantities, one standard deviation each
+  /// Per channel: residuals that errors of the played-in quantities may cause, one standard deviation each
   /// [shape][sample] [pu].
   std::map<std::string, std::vector<std::vector<double>>> doubt = {};
-  /// Event and its state as played, for replay().
+  /// Event as it was played, for replay().
   std::shared_ptr<const event::FitEvent> prepared = {};
-  event::EventState state = {};    ///< of `prepared`
+  event::EventState state = {};    ///< fitted quantities of `prepared`
   std::vector<std::string> notes;  ///< notes for the reader: uncertain switching times, drift, unread columns
 };
 
@@ -65,9 +66,9 @@ class Measurement;
 struct CompareOptions {
   PlaybackInput input = PlaybackInput::voltage;       ///< inputs of the playback
   double step_threshold = switching::kStepThreshold;  ///< threshold of switching::detect_switchings [pu]
-  /// Fits detected switching times to P and Q within their sample intervals, because the record does not
-  /// determine them any better. At 30/s half an interval is 17 ms; in a fault this error alone left eight
-  /// times the noise of a correct model. If the fit brings no improvement, the interval's middle is kept.
+  /// Fits detected switching times to P and Q within their sample intervals. At 30 samples/s half an interval
+  /// is 17 ms; in a fault this error alone causes a residual of eight times the noise. If the fit brings no
+  /// improvement, the midpoint of the interval is kept.
   bool fit_switchings = true;
   switching::StepShape step_shape =
       switching::StepShape::either;  ///< filtering of steps; either: decided from the record
@@ -92,15 +93,15 @@ struct ChannelRule {
   double floor;            ///< noise floor from interpolation, for records without noise [pu]
   bool starts_at_mean;     ///< the model starts at this channel's pre-event mean
   bool judged = true;      ///< whether the verdict uses the channel
-  std::string_view skip =
-      {};           ///< window without evaluation, because its noise differs from the pre-event noise
+  /// Name of a window that is not evaluated, because its noise differs from the pre-event noise; empty: none.
+  std::string_view skip = {};
   double size = 1;  ///< nominal value: the machine's MVA for a power, else 1 [pu]
 };
 /// Computes the errors of a residual [pu] in one window. `first`: the window includes its start. `noise`:
 /// standard deviation of the noise [pu].
 WindowError window_error(const std::vector<double>& t, const std::vector<double>& residual,
                          const std::vector<char>& left_out, const Window& window, bool first, double noise);
-/// Returns a channel with its curves and their difference, and no errors.
+/// Returns a channel with measured and modelled curves and their residual; the errors are not computed.
 ChannelComparison channel_curves(const ChannelRule& rule, const std::vector<double>& measured,
                                  const std::vector<double>& modelled);
 /// Computes residual, window errors and error map of one channel. Record, windows and playback.start of
@@ -112,16 +113,16 @@ std::vector<double> frequency_of(const std::vector<double>& t, const std::vector
                                  double nominal);
 
 /// Returns the time windows: pre-event, fault, and 0-1 s, 1-5 s and > 5 s after the last switching. The fault
-/// lies between the first and the last switching, so a single switching has none. Without a switching, the
-/// windows count from the start of the record (0-1 s, 1-2 s, 2-6 s and > 6 s with a pre-event of 1 s).
+/// lies between the first and the last switching; there is none with a single switching. Without a switching,
+/// the windows count from the start of the record (0-1 s, 1-2 s, 2-6 s and > 6 s with a pre-event of 1 s).
 /// Windows without a sample are omitted, and no window begins or ends with samples that are left out.
 std::vector<Window> event_windows(const record::Record& record,
                                   const std::vector<switching::Switching>& switchings, double pre_event,
                                   const std::vector<char>& left_out = {});
 
-/// Plays the record into the model and computes the residuals. With P and Q played in, no network fixes the
-/// angle, so a constant error of P from a noisy pre-event becomes a ramp of frequency. Frequency and speed
-/// are then shown, not judged. Throws InputError: the model cannot follow the record, or its parts throw.
+/// Plays the record into the model and computes the residuals. If P and Q are played in, no network fixes the
+/// angle, so an error of P from noise before the event becomes a ramp of frequency. Frequency and speed are
+/// then shown but not judged. Throws InputError if the record cannot be prepared or the simulation fails.
 EventComparison compare_event(const plant::PlantModel& model, const Measurement& measurement,
                               const CompareOptions& options);
 /// As above, for a record that is compared with one model.
@@ -134,9 +135,9 @@ struct ReplayedChannel {
   double noise = 0;              ///< standard deviation of the pre-event residual [pu]
   WindowError whole;             ///< error of the whole record
 };
-/// Plays an event of a comparison into the same structure with other parameter values, with the switching
-/// times and the start of the comparison. Returns one entry for each of its channels. Takes a few
-/// milliseconds. Throws InputError as compare_event().
+/// Plays an event of a comparison into a plant of the same structure with other parameter values. Switching
+/// times and initial state are those of the comparison. Returns one entry for each channel of the event.
+/// Takes a few milliseconds. Throws InputError as compare_event().
 std::vector<ReplayedChannel> replay(const sim::plant::PlantUnderTest& tested, const EventComparison& event);
 
 /// Statistical verdict: whether the residuals are within noise.
@@ -149,8 +150,8 @@ struct Adequacy {
 };
 /// Sets the bounds of all maps and judges the model. It is adequate if no time-frequency bin, no window over
 /// all frequencies and no whole record exceeds its noise bound, at a joint false-alarm probability of
-/// adequacy.false_alarm. If noise alone may exceed the nominal value in a bin, as for a model that is
-/// unstable in playback, the record cannot decide, and the model is not adequate.
+/// adequacy.false_alarm. If noise alone may exceed the nominal value in a bin, the verdict is undecided and
+/// counts as not adequate. This occurs if the model is unstable in playback.
 Adequacy judge(std::vector<EventComparison>& events);
 
 }  // namespace swingbank::validate::compare

@@ -58,8 +58,9 @@ class Cosines {
     for (std::size_t i = 0; i < 4 * n; ++i)
       table_[i] = std::cos(constants::pi * static_cast<double>(i) / (2.0 * static_cast<double>(n)));
   }
-  /// Returns the coefficients of the discrete cosine transforms of all series: a Fourier transform of the
-  /// samples with even indices ascending, then odd indices descending (Makhoul 1980), of two series at once.
+  /// Returns the coefficients of the discrete cosine transforms of all series. Each Fourier transform
+  /// contains two series, with samples of even indices in ascending order, then those of odd indices in
+  /// descending order (Makhoul 1980).
   [[nodiscard]] std::vector<std::vector<double>> coefficients(
       const std::vector<std::span<const double>>& series) {
     std::vector<std::vector<double>> all(series.size(), std::vector<double>(n_));

@@ -48,7 +48,7 @@ struct TimeFrequencyBin {
   /// variances under coloured noise; 1 for noise alone. It differs from rms / sigma, because a window or band
   /// contains only a part of the noise.
   double normalised = std::numeric_limits<double>::quiet_NaN();
-  double bound = std::numeric_limits<double>::quiet_NaN();  ///< of `normalised` for noise; see set_bounds()
+  double bound = std::numeric_limits<double>::quiet_NaN();  ///< noise limit of `normalised`; see set_bounds()
   /// Whether the window is too short for the band.
   [[nodiscard]] bool empty() const { return values == 0; }
   /// Returns the RMS that noise alone may reach [pu].
@@ -71,7 +71,7 @@ struct ErrorMap {
 
 /// Options of an error map.
 struct ErrorMapOptions {
-  int quiet = 0;  ///< pre-event samples whose mean is the model's start; 0: the start is exact
+  int quiet = 0;  ///< number of pre-event samples whose mean is the operating point; 0: it is exact
   /// The model starts at the first window's mean, so that mean carries no information.
   bool starts_at_mean = true;
   std::string_view skip = {};  ///< name of a window to leave out: its bins stay empty
@@ -82,8 +82,8 @@ struct ErrorMapOptions {
 /// Projects each window's residual on the window's orthonormal cosines (DCT-II; mode k has k half periods).
 /// A mode belongs to the band of its frequency; white noise gives every mode the same variance. A band is
 /// empty if the window is shorter than half a period of the band's upper edge; the window's mean then counts
-/// in `all` only. After the first window the mean's variance includes the error of the start. Large
-/// components leak: of a component of 100 x, about 3 x appears two bands away.
+/// in `all` only. After the first window, the variance of the mean includes the error of the operating point.
+/// Large components leak: a normalised RMS of 100 in one band adds about 3 two bands away.
 ErrorMap error_map(std::span<const double> t, std::span<const double> residual,
                    const std::vector<Window>& windows, const ChannelNoise& noise,
                    const ErrorMapOptions& options = {});

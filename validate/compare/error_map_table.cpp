@@ -13,15 +13,15 @@
 namespace swingbank::validate::compare {
 namespace {
 
-/// Returns the shade of a bin: 0 within its bound, 0.35 just above it, rising logarithmically to 1 at 25 ×
-/// the bound.
+/// Returns the shade of a bin: -1 without a bound, 0 within its bound, 0.35 just above it, rising
+/// logarithmically to 1 at 25 times the bound.
 double shade(const TimeFrequencyBin& bin) {
   if (bin.empty() || !std::isfinite(bin.bound)) return -1;
   if (!bin.exceeds()) return 0;
   return std::clamp(0.35 + 0.65 * std::log(bin.normalised / bin.bound) / std::log(25.0), 0.0, 1.0);
 }
 
-/// Returns a percentage without an exponent from 10 on.
+/// Returns a percentage as text, from 10 on as an integer without an exponent.
 std::string percent_text(double percent) {
   return percent < 10 ? fmt::format("{:.2g}", percent) : fmt::format("{:.0f}", percent);
 }
@@ -32,7 +32,8 @@ std::string nominal_text(const LabelledMap& m) {
   return fmt::format("{:.4g} {}", nominal, m.unit == "MW" || m.unit == "Mvar" ? "MVA" : m.unit);
 }
 
-/// Returns a cell of the map. Its hint: the error in units, in % of the nominal value, and against the bound.
+/// Returns a cell of the map. Its tooltip shows the error in the channel's unit, in % of the nominal value,
+/// and against the bound.
 report::Cell map_cell(const LabelledMap& m, const std::string& window, std::string_view band,
                       const TimeFrequencyBin& bin) {
   if (bin.empty()) return {"–"};
@@ -56,7 +57,7 @@ std::vector<std::string> columns(bool with_event) {
   return names;
 }
 
-/// Row of a map; each bin has its own event in `of`.
+/// Bin in a row of the table, with the event and channel that it comes from.
 struct MapRow {
   const TimeFrequencyBin* bin = nullptr;
   const LabelledMap* of = nullptr;
@@ -90,8 +91,7 @@ void keep_worse(std::vector<MapRow>& worst, const std::vector<MapRow>& row) {
     if (!row[k].bin->empty() && (!worst[k].bin || ratio(row[k]) > ratio(worst[k]))) worst[k] = row[k];
 }
 
-/// Returns " This bin exceeds its limit in n of m events.", of the events that have the bin; empty for one
-/// event.
+/// Returns " This bin exceeds its limit in n of m events.", with m events that have the bin; empty if m is 1.
 std::string events_beyond(const std::vector<LabelledMap>& maps, const std::string& channel,
                           const std::string& window, std::size_t band) {
   int beyond = 0, all = 0;

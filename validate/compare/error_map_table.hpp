@@ -22,15 +22,15 @@ struct LabelledMap {
 /// Returns the map of each channel of each event, which must outlive the result.
 std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events);
 
-/// Table with one row per event, channel and window: RMS in units, then the normalised RMS over all
-/// frequencies and per band. A star marks values above their bound, "–" a band for which the window is too
-/// short. The event column is omitted if there is one event only.
+/// Table with one row per event, channel and window: RMS in the channel's unit, then the normalised RMS over
+/// all frequencies and per band. A star marks values above their bound, "–" a band for which the window is
+/// too short. The event column is omitted if there is one event only.
 report::Table map_table(const std::vector<LabelledMap>& maps);
 /// The same table with the worst event in each bin (highest normalised RMS / bound).
 report::Table worst_map_table(const std::vector<LabelledMap>& maps);
 
-/// Sentence that names, per channel, the window and band furthest above their bound, and the number of events
-/// in which this bin exceeds it.
+/// Sentence that names, per channel, the window and band furthest above the bound, and the number of events
+/// in which this bin exceeds its bound.
 std::string map_sentence(const std::vector<LabelledMap>& maps);
 
 /// JSON rows, one per bin: window, band ("all": every frequency), values, rms_pu, normalised_rms and

@@ -22,7 +22,7 @@ std::string quantity(double value, const ChannelComparison& c) {
   return fmt::format("{:.4g} {}", value * c.scale, c.unit);
 }
 
-/// Returns the channel of an event in a model's playback; nullptr if the model could not follow it.
+/// Returns the channel of an event in a model's playback; nullptr if there is none.
 const ChannelComparison* find_channel(const Played& played, std::size_t event, const std::string& name) {
   if (event >= played.events.size()) return nullptr;
   const auto& channels = played.events[event].channels;

@@ -10,8 +10,8 @@
 namespace swingbank::validate::compare {
 
 /// Table with one row per event and channel: RMS, noise σ and RMS / noise of the whole record for each model
-/// (WindowError, ChannelComparison). For a single model it also has the maximum error. After
-/// a fit, a column has the use of each event.
+/// (WindowError, ChannelComparison). For a single model it also has the maximum error. After a fit, a column
+/// shows the use of each event.
 report::Table error_table(const std::vector<Played>& played, const EventUse& use = {});
 /// The same table as terminal text below its caption.
 std::string error_text(const std::vector<Played>& played, const EventUse& use = {});

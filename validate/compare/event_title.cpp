@@ -11,7 +11,7 @@
 namespace swingbank::validate::compare {
 namespace {
 
-constexpr double kFaultDip = 0.1;          ///< least relative voltage dip of a fault
+constexpr double kFaultDip = 0.1;          ///< smallest relative voltage dip of a fault
 constexpr double kFrequencyChange = 0.05;  ///< smallest change of a frequency event [Hz]
 constexpr double kFrequencyAverage = 1.0;  ///< averaging time of the frequency [s]
 

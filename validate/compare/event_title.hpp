@@ -1,5 +1,6 @@
 #pragma once
-// Titles of events for headings ("fault at 2.000 s, 100 ms"), and a hint for long quiet ends.
+// Titles of events for headings ("fault at 2.000 s, 100 ms"), and a hint about records that continue long
+// after the event.
 #include <string>
 
 #include "validate/compare/compare.hpp"
@@ -8,7 +9,8 @@ namespace swingbank::validate::compare {
 
 /// Returns a title that names the fault, or else staged tests or switchings, and the change of frequency.
 std::string event_title(const EventComparison& e);
-/// Returns a hint at --until if the record goes on for 120 s or more after its last switching, else nothing.
+/// Returns a hint to use --until if the record continues for 120 s or more after its last switching;
+/// otherwise an empty string.
 std::string quiet_end_hint(const EventComparison& e);
 
 }  // namespace swingbank::validate::compare

@@ -11,8 +11,8 @@ struct EventUse {
   std::vector<std::string> held_out = {};  ///< names of the records excluded from the fit
   /// Returns the use of a record: "comparison", "fit" or "verification".
   [[nodiscard]] std::string of(const std::string& record) const;
-  /// Returns the number of fitted events and the names of those that verify the fit, or that none does;
-  /// empty without a fit.
+  /// Returns a sentence with the number of fitted events and the names of the events that verify the fit, if
+  /// any; empty without a fit.
   [[nodiscard]] std::string sentence(const std::vector<std::string>& records) const;
 };
 

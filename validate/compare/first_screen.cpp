@@ -12,7 +12,8 @@
 namespace swingbank::validate::compare {
 namespace {
 
-constexpr double kShownBefore = 1, kShownAfter = 5;  ///< first view, from the first switching [s]
+constexpr double kShownBefore = 1,
+                 kShownAfter = 5;  ///< initial view before and after the first switching [s]
 
 const ChannelComparison* find_channel(const Played* played, std::size_t event, const std::string& name) {
   if (!played || event >= played->events.size()) return nullptr;

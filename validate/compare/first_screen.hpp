@@ -11,11 +11,11 @@
 
 namespace swingbank::validate::compare {
 
-/// Remainder of a model that is statistically complete.
+/// Content of the residual of a model that is statistically complete.
 enum class Remainder {
   noise,        ///< noise alone
-  uncertainty,  ///< of a held-out event: noise and the uncertainty of the fitted parameters
-  playback,     ///< the shown playback exceeds noise, which the verdict of a fit does not require
+  uncertainty,  ///< noise and, in a held-out event, the uncertainty of the fitted parameters
+  playback,     ///< more than noise in the playback shown, although the fit is statistically complete
 };
 /// Returns the clause for a headline: ": only noise remains".
 std::string remainder_text(Remainder remainder);
@@ -35,7 +35,8 @@ ChannelError channel_error(const Fitness& fitness, const EventComparison& event,
 
 /// Returns the judged channels above their noise bounds: "Q of event3.csv".
 std::vector<std::string> beyond_noise(const Played& played);
-/// Returns the remainder of a complete model. `noise_alone`: every event is within the limit of noise alone.
+/// Returns the content of the residual of a complete model. `noise_alone`: every event is within the limit of
+/// noise alone.
 Remainder remainder_of(const Played& played, bool noise_alone);
 
 /// Content of a report's first screen.
@@ -49,7 +50,7 @@ struct FirstScreen {
   EventUse use = {};                      ///< events of the fit and of its verification
   std::string next = {};                  ///< next command; empty: none
 };
-/// Adds headline, chips, P and Q of the worst event, and the fall of the errors.
+/// Adds headline, chips, P and Q of the worst event, and bars of the errors before and after.
 void first_screen(report::Document& document, const FirstScreen& screen);
 
 /// Returns the largest RMS / noise of all judged channels and its event; 0 and 0 if none has noise.
@@ -58,8 +59,8 @@ std::pair<double, std::size_t> largest_rms_over_noise(const Played& played);
 /// first two.
 std::pair<std::size_t, std::vector<std::string>> worst_event(const Played& played);
 
-/// Returns the chart of one channel: measured, and simulated by each model with its role. Empty without
-/// series.
+/// Returns the chart of one channel: the measured curve, and the simulated curve of each model in its ink.
+/// The chart has no series if no model has the channel.
 report::Curves channel_curves(const std::vector<std::pair<const Played*, report::Ink>>& models,
                               std::size_t event, const std::string& channel);
 /// Returns the id of the chart of a channel.

@@ -28,7 +28,7 @@ struct Movement {
   std::string event, channel, unit;  ///< names of event and channel; unit of `measured`
   double measured = 0;               ///< RMS of the measured deviation [unit]
   double error = 0;                  ///< RMS of modelled - measured [% of `measured`]
-  double share = 0;  ///< least-squares share of the measured deviation in the simulated one [%]
+  double share = 0;  ///< regression coefficient of the modelled on the measured deviation [%]; 100: equal
   double limit = 0;  ///< limit of `error` [%]
   /// Whether the error exceeds its limit; NaN counts as exceeding.
   [[nodiscard]] bool exceeds() const { return !(error <= limit); }
@@ -51,8 +51,8 @@ struct Fitness {
   }
 };
 
-/// Returns the errors of one channel in the window of `phase` [%], without limits; 1 pu is `percent` of them.
-/// Samples that are not compared, and those that `by` leaves out, are excluded.
+/// Returns the errors of one channel in the window of `phase` [% of MVA], without limits. `percent`: 1 pu in
+/// % of MVA. Samples that are not compared, and those that `by` excludes, are not used.
 JudgedErrors errors_in(const EventComparison& event, const ChannelComparison& channel,
                        thresholds::Phase phase, const thresholds::Acceptance& by, double percent);
 /// Judges the events' errors by the limits `by`. `mva` is the base of the plant's machine. Samples that are
@@ -64,7 +64,7 @@ Fitness not_judged(const thresholds::Acceptance& by, double mva, const std::stri
 
 /// Table with one row per channel and window: the worst of the three errors of all events, and their limits.
 report::Table worst_fitness_table(const Fitness& fitness);
-/// Table of the measured deviation of P and Q per event, and the share that the model reproduces.
+/// Table of the measured deviation of P and Q per event, with the error and the regression coefficient.
 report::Table movement_table(const Fitness& fitness);
 /// Returns the verdict with all errors and limits as JSON.
 nlohmann::json fitness_json(const Fitness& fitness);

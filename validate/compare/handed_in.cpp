@@ -13,7 +13,7 @@ namespace {
 using usability::UsabilityAt;
 
 std::string percent_of_mva(double value) { return fmt::format("{:.2g}", value); }
-/// Returns a drift [% of MVA]; below the error of the simulation, that error as a bound.
+/// Returns a drift [% of MVA] as text; "< e" if it is below the error e of the simulation.
 std::string drift_text(double drift) {
   const double error = 100 * usability::kSampleError;
   return drift < error ? fmt::format("< {:g}", error) : percent_of_mva(drift);

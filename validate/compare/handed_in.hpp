@@ -1,5 +1,5 @@
 #pragma once
-// Model that is handed in: its nameplate and usability, as parts of a report.
+// Submitted model: its nameplate and usability, as parts of a report.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace swingbank::validate::compare {
 
-/// Model that is handed in, with what a verification report states of it.
+/// Submitted model with the information that a verification report requires.
 struct HandedIn {
   std::string name, file, sha256;  ///< name; the plant file that the command read, and its hash
   double mva = 0;                  ///< machine base [MVA]

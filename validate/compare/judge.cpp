@@ -1,4 +1,4 @@
-// Statistical verdict: residuals within noise, and sensitivity of the records.
+// Statistical verdict: whether the residuals are within noise, and whether the records can decide it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ std::vector<NamedBin> all_bins(const std::vector<EventComparison>& events) {
   return all;
 }
 
-/// Returns whether noise alone may exceed the channel's nominal value in the bin, so that it has no
+/// Returns whether noise alone may exceed the channel's nominal value in the bin. The bin then has no
 /// information.
 bool is_uninformative(const NamedBin& named) { return !(named.bin->allowed() <= named.channel->size); }
 

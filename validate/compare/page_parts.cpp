@@ -31,7 +31,7 @@ std::vector<double> times(std::vector<double> values, double scale, double shift
   return values;
 }
 
-/// Models that can follow an event, with their roles; the first provides the measured curves.
+/// Models with a playback of the event, and their inks; the first model provides the measured curves.
 using Models = std::vector<std::pair<const Played*, Ink>>;
 Models models_of(const std::vector<Played>& played, std::size_t event) {
   Models models;
@@ -162,7 +162,7 @@ std::string difference_text(const CommandPage& p) {
       channels + (beyond.size() == 1 ? " is" : " are"));
 }
 
-/// Returns the screen of a command whose last model is the result.
+/// Returns the first screen of a command whose last model is the result.
 FirstScreen screen_of(const CommandPage& p) {
   FirstScreen s;
   const Fitness& fitness = p.played.back().fitness;

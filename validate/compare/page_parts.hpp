@@ -16,15 +16,14 @@ namespace swingbank::validate::compare {
 struct PageParameter {
   std::string block, symbol, unit;                  ///< block and symbol of the parameter; its unit
   double before = 0, after = 0, low = 0, high = 0;  ///< low, high: 95 % interval; NaN: not estimated
-  double decided = 0;                               ///< share determined by the records; NaN: not estimated
+  double decided = 0;                               ///< variance reduction by the records; NaN: not estimated
   std::string note = {};                            ///< "at its bound"
 };
 
 /// Errors of the last model with their limits, and the verdict on each other model.
 void limits_part(report::Document& page, const std::vector<Played>& played);
 /// Panels of each event, folded: V, f, P and Q, measured and simulated by each model; then other recorded
-/// channels. P and Q of the worst event are omitted, because the first
-/// screen shows them.
+/// channels. P and Q of the worst event are omitted, because the first screen shows them.
 void panels_part(report::Document& page, const std::vector<Played>& played);
 /// Table of parameters: before, after, 95 % interval. Without intervals (compare): the model's values.
 void parameters_part(report::Document& page, const std::vector<PageParameter>& parameters);
@@ -40,19 +39,19 @@ void glossary_part(report::Document& page);
 /// Content of a page that consists of the shared parts only; `tried` is its list of hypotheses.
 struct CommandPage {
   std::string title, subtitle;             ///< heading; line below it
-  std::string headline = {};               ///< verdict in at most eight words; empty: that of compare
+  std::string headline = {};               ///< verdict in at most eight words; empty: that of headline()
   std::string next = {};                   ///< next command; empty: none
   bool complete = false;                   ///< statistically complete: the residual is noise
-  bool noise_alone = true;                 ///< without the uncertainty of fitted parameters
+  bool noise_alone = true;                 ///< every event is within the limit of noise alone
   std::string sentence;                    ///< verdict in words
   std::vector<Played> played;              ///< models with their comparisons, in order
   std::vector<PageParameter> parameters;   ///< table of parameters; may be empty
   EventUse use = {};                       ///< events of the fit and of its verification
   std::vector<std::string> tried;          ///< tried hypotheses
-  std::optional<HandedIn> handed_in = {};  ///< model that is handed in; none: no such parts
+  std::optional<HandedIn> handed_in = {};  ///< submitted model; none: no nameplate and no usability
   bool signatures = false;                 ///< blank lines for owner and reviewer in print
   report::Provenance provenance;           ///< inputs and software of the run
-  std::string figures;                     ///< JSON
+  std::string figures;                     ///< JSON of the results, embedded in the page
 };
 /// Returns the page's verdict in at most eight words.
 std::string headline_of(const CommandPage& page);

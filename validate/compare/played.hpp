@@ -13,17 +13,17 @@ namespace swingbank::validate::compare {
 /// A model with its comparison to each record.
 struct Played {
   std::string name;                     ///< "submitted", "calibrated"
-  std::vector<EventComparison> events;  ///< empty if the model cannot follow them
+  std::vector<EventComparison> events;  ///< empty if playback of a record failed
   Fitness fitness;                      ///< verdict on fitness for purpose
 };
 
-/// Plays the records into the model and judges its fitness. If the model cannot follow a record, `events` is
-/// empty and `fitness` is not judged and holds the reason.
+/// Plays the records into the model and judges its fitness. If playback of a record fails, `events` is empty,
+/// and `fitness` is not judged and contains the reason.
 Played play_and_judge(std::string name, const plant::PlantModel& model,
                       const std::vector<Measurement>& records, CompareOptions options,
                       const thresholds::Acceptance& by);
 
-/// Returns the events of the first model that follows them; empty if none does.
+/// Returns the events of the first model whose playbacks succeeded; empty if there is no such model.
 const std::vector<EventComparison>& followed_events(const std::vector<Played>& played);
 /// Returns the records without the measured states speed, Efd and Ifd (--power-only).
 std::vector<record::Record> power_only(std::vector<record::Record> records);

@@ -12,7 +12,7 @@ constexpr const char* kReportFormat = "swingbank-report-1";
 
 /// Adds the common part of a command's JSON to its own keys: format, command, software, model, nameplate,
 /// verdicts, usability, errors with units, provenance, and the use of each of `events`. `kind`: the command.
-/// Throws std::logic_error if the page has no model that is handed in.
+/// Throws std::logic_error if the page has no submitted model (CommandPage::handed_in).
 void add_report(nlohmann::json& result, const std::string& kind, const CommandPage& page);
 
 }  // namespace swingbank::validate::compare

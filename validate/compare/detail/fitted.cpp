@@ -11,8 +11,8 @@
 namespace swingbank::validate::compare {
 namespace {
 
-/// Refits `white` with the plant's response to voltage noise in the noise model. Returns `white` if that
-/// noise is negligible.
+/// Repeats the fit `white` with the plant's response to voltage noise in the noise model. Returns `white` if
+/// this response is negligible.
 fit::Fit in_slow_noise(fit::Fit white, const plant::PlantModel& model, const noise::WhitenedEvents& events) {
   const auto slow =
       events.with(noise::remember_noise({white.plant, model.conventions}, white.events, events));
@@ -57,7 +57,7 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
     if (s.uncertainty > 0) event.switchings.push_back(s);
   event.channels = playin::compared_outputs(e.record, true);
   const auto n = static_cast<Eigen::Index>(event.channels.size());
-  // the error map has the channels' noise, so unit noise is used here
+  // The error map contains the noise of the channels, so unit noise is used here.
   const noise::EventNoise unit{.deviation = Eigen::VectorXd::Ones(n),
                                .whitening = Eigen::MatrixXd::Identity(n, n)};
   e.doubt.clear();

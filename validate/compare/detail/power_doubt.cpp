@@ -10,7 +10,8 @@
 namespace swingbank::validate::compare {
 namespace {
 
-constexpr std::size_t kRuns = 24;  ///< largest number of playbacks for P and for Q; neighbours share one
+constexpr std::size_t kRuns =
+    24;  ///< largest number of playbacks for P and for Q; adjacent samples share one
 
 class PowerDoubt {
  public:
@@ -31,7 +32,7 @@ class PowerDoubt {
   }
 
  private:
-  /// Adds the pre-event noise to the samples about the switchings.
+  /// Plays P or Q in with the pre-event noise added to the samples around the switchings.
   void noise(std::vector<double> record::Record::*power) {
     const double deviation = standard_deviation(e_.record.*power, e_.playback.start.samples);
     if (!(deviation > 0)) return;
@@ -44,10 +45,11 @@ class PowerDoubt {
       play(moved, e_.switchings, 1);
     }
   }
-  /// Adds the uncertainty between a switching and the samples beside it, where P and Q are extrapolated. It
-  /// is estimated as the error of extrapolating the adjacent sample from those behind it.
+  /// Adds the uncertainty between a switching and its adjacent samples, where P and Q are extrapolated. It is
+  /// estimated from the error when an adjacent sample is itself extrapolated from the samples behind it.
   void beside_switchings(std::vector<double> record::Record::*power) {
-    constexpr double kOfStep = 0.3;  // share of a whole step's error, RMS over the position in the step
+    constexpr double kOfStep =
+        0.3;  // share of the error over a whole interval, RMS over the switching's position
     for (const switching::Switching& s : e_.switchings) {
       const auto next =
           static_cast<std::ptrdiff_t>(std::ranges::upper_bound(e_.record.t, s.time) - e_.record.t.begin());
@@ -58,8 +60,8 @@ class PowerDoubt {
       }
     }
   }
-  /// Replaces y[at] by cubic extrapolation (or lower order) from the samples behind it. Returns false if
-  /// there is none.
+  /// Replaces y[at] by extrapolation, at most cubic, from the samples next to it on `side`. Returns false if
+  /// there are no such samples.
   [[nodiscard]] bool carry_on(std::vector<double>& y, std::ptrdiff_t at, std::ptrdiff_t side) const {
     constexpr std::array<std::array<double, 4>, 4> kBinomial = {
         {{1, 0, 0, 0}, {2, -1, 0, 0}, {3, -3, 1, 0}, {4, -6, 4, -1}}};

@@ -1,6 +1,7 @@
 #pragma once
-// Uncertainty of a playback of P and Q due to their noise and gaps about a switching. During a fault the
-// voltage responds to them many times more strongly than elsewhere, and the rotor angle retains the error.
+// Uncertainty of a playback of P and Q due to their noise and to their unknown values between the samples
+// around a switching. During a fault the voltage responds to these errors many times more strongly than
+// elsewhere, and the rotor angle retains the error.
 #include "validate/compare/compare.hpp"
 
 namespace swingbank::validate::compare {
