@@ -311,8 +311,7 @@ class Calibrating {
     return prior_information(model_.plant, plant, free_).asDiagonal();
   }
 
-  /// Computes standard errors, correlations, unidentified combinations, and further events that identify
-  /// them.
+  /// Computes standard errors, correlations, unidentified combinations and further events.
   void learn() {
     std::vector<fit::EventSensitivities> jacobians(c_.prepared.size());
     in_parallel(
