@@ -26,7 +26,7 @@ namespace {
 constexpr int kAtLeast = 3;
 /// Maximum number of refits of the given model from a better start.
 constexpr int kBases = 2;
-/// Number of steps of the fits that continue with the new noise model.
+/// Number of iterations of the fits that continue with the new noise model.
 constexpr int kOnwards = 4;
 
 class Diagnoser {
@@ -69,7 +69,7 @@ class Diagnoser {
       report(event::Phase::base, "", 0, 1);
       fit_base(model_, options_, from, result_);
       report(event::Phase::base, "", 1, 1);
-      result_.ranked.clear();  // results on a worse base model
+      result_.ranked.clear();  // these results belong to a worse base model
       result_.torque = result_.field = {};
       keep();
       report_preliminary(first_sentence(result_, options_.adequate));
@@ -139,9 +139,9 @@ class Diagnoser {
     std::ranges::move(others, std::back_inserter(result_.ranked));
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
   }
-  /// Measures the noise again through the leading extension if the base model's poor fit hides it, and
-  /// continues all fits with it. A hypothesis whose fit fails then is dropped, because its cost has the units
-  /// of the former noise. Returns whether the noise was measured.
+  /// Measures the noise again through the leading hypothesis if the poor fit of the base model hides the
+  /// noise. Continues all fits with the new noise. A hypothesis whose fit then fails is dropped, because its
+  /// cost refers to the former noise. Returns whether the noise was measured.
   bool measure_noise_again() {
     if (result_.ranked.empty() || result_.base.reduced_chi2() < thresholds::noise.measurable) return false;
     const hypothesis::Judgement& best = result_.ranked.front();
@@ -242,8 +242,8 @@ class Diagnoser {
     }
     return pairs;
   }
-  /// Returns pairs with the machine or instrument effect that most reduces the cost of a control: the
-  /// controls were ranked without it. Empty if there is no such effect.
+  /// Returns pairs with the machine or instrument effect that most reduces the cost of a control hypothesis.
+  /// The controls were ranked without this effect. Empty if there is no such effect.
   [[nodiscard]] std::vector<hypothesis::Judgement> beside_companion(
       const hypothesis::BaseModel& base_model) const {
     const auto most = std::ranges::max_element(result_.ranked, {}, &hypothesis::Judgement::companion_gain);
@@ -280,7 +280,8 @@ class Diagnoser {
     return competitors;
   }
   /// Tries the remaining hypotheses with a pair's second effect. The first effect was selected without the
-  /// second one and may have compensated for two. Empty if the second effect cannot be a first one by itself.
+  /// second one and may have compensated for two effects. Empty if the second effect does not satisfy
+  /// can_be_first().
   [[nodiscard]] std::vector<hypothesis::Judgement> beside_second(const hypothesis::BaseModel& base_model,
                                                                  const hypothesis::Judgement& pair) const {
     const auto second = std::ranges::find_if(result_.ranked, [&](const hypothesis::Judgement& single) {
@@ -296,7 +297,7 @@ class Diagnoser {
     return pairs;
   }
   /// Tries new pairs of the effects of accepted pairs, because each effect was fitted with one partner only.
-  /// A pair is tried only if its expected evidence would place it in the set.
+  /// A pair is tried only if its expected evidence would place it in the credible set.
   void cross(const hypothesis::BaseModel& base_model, std::vector<hypothesis::Judgement>& pairs) const {
     std::vector<hypothesis::Judgement> tried = pairs;
     const auto in_set = [&](double gain) { return gain > pairs.front().gain - hypothesis::out_of_set(); };
@@ -364,7 +365,7 @@ class Diagnoser {
     }
     best_first(result_.ranked);
   }
-  /// Returns whether a pair explains what no single accepted effect explains.
+  /// Returns whether a pair explains the records clearly better than every accepted single effect.
   [[nodiscard]] bool needed(const hypothesis::Judgement& pair) const {
     return std::ranges::none_of(result_.ranked, [&](const hypothesis::Judgement& single) {
       return single.accepted &&
@@ -404,7 +405,7 @@ class Diagnoser {
                                                : event::Phase::pair_unseen_events,
          [&](hypothesis::Judgement& j) { judge_one(j); });
   }
-  /// Judges a hypothesis on unseen events and against the inputs that are free in time.
+  /// Judges a hypothesis on held-out events and against the inferred inputs.
   void judge_one(hypothesis::Judgement& j) const {
     hypothesis::judge(trial(), result_.base, held_out_base_, j);
     for (const auto& [m, what] : {std::pair(&result_.torque, "torque"), {&result_.field, "field voltage"}})

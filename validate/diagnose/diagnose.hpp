@@ -33,24 +33,25 @@ struct Diagnosis {
   Verdict verdict = Verdict::adequate;             ///< kind of the result
   hypothesis::Side side = hypothesis::Side::none;  ///< side of the plant at fault
   thresholds::Ruling ruling;            ///< the criterion that decided whether the model is adequate
-  std::string sentence;                 ///< the verdict, for a grid engineer
+  std::string sentence;                 ///< the verdict in words
   std::vector<std::string> effects;     ///< name of one effect, or names of several that act together
   std::vector<std::string> equivalent;  ///< the other names in the 95 % set
   /// Every explanation that was not rejected, most probable first.
   std::vector<hypothesis::Explanation> probabilities;
-  hypothesis::Decision would_decide;  ///< measurements that would separate them
+  hypothesis::Decision would_decide;  ///< measurements that would separate the explanations
   fit::Fit base;                      ///< the given structure, refitted
   /// Sparse parameter selection: the smallest set of parameters that explains the records. Empty if no small
   /// set reduces the residual to noise.
   std::optional<fit::SparseSelection> wrong;
-  double wrong_evidence = 0;  ///< evidence that only these are wrong, over a refit of every parameter [chi2]
+  double wrong_evidence =
+      0;  ///< evidence that only `wrong` is wrong, relative to a refit of all parameters [chi2]
   reduced::FreeInput torque, field;  ///< each inferred without any added effect
-  user_model_search::UserModelSearch
-      user_models;  ///< user-defined models tried if no known effect explains the records
+  /// User-defined models, tried if no known effect explains the records.
+  user_model_search::UserModelSearch user_models;
   std::vector<hypothesis::Judgement> ranked;  ///< in descending order of evidence; accepted ones first
   noise::WhitenedEvents events;               ///< with the noise model of all fits
-  sim::Conventions conventions;               ///< of the model
-  double seconds = 0;                         ///< processing time [s]
+  sim::Conventions conventions;               ///< conventions of the model
+  double seconds = 0;                         ///< elapsed time [s]
 };
 
 /// Limits, effort and callbacks of a diagnosis.
@@ -67,8 +68,8 @@ struct DiagnoseOptions {
   /// Called with each preliminary result (the residual, the side, then the leading hypothesis) and the
   /// diagnosis so far. May be empty.
   std::function<void(const std::string& sentence, const Diagnosis& so_far)> preliminary_result = {};
-  /// Returns whether the user has asked to stop. Completed fits are kept once the given model is fitted. May
-  /// be empty.
+  /// Returns whether the user has asked to stop. Completed fits are kept if the fit of the given model is
+  /// among them. May be empty.
   std::function<bool()> stop = {};
 };
 

@@ -14,7 +14,7 @@ namespace swingbank::validate::diagnose {
 /// effect.
 struct ReportChannel {
   std::string name, unit;                       ///< name of the channel; its unit
-  double scale = 1, noise = 0;                  ///< conversion from 1 pu; noise standard deviation [pu]
+  double scale = 1, noise = 0;                  ///< units in 1 pu; standard deviation of the noise [pu]
   double size = 0;                              ///< MVA of the machine for a power, else 1 [pu]
   std::vector<double> measured, before, after;  ///< [pu]; `after` is empty without an addition
   compare::ErrorMap map_before, map_after;      ///< error maps without and with the addition
@@ -58,7 +58,7 @@ std::vector<compare::Played> play_models(const plant::PlantModel& model, const D
 /// Empty if no effect is named.
 std::string next_command(const Diagnosis& diagnosis, const report::Provenance& provenance);
 
-/// Returns hashes of model and records, version and command line.
+/// Returns command line, version, model, default parameter values and records.
 report::Provenance diagnosis_provenance(const plant::PlantModel& model, const Diagnosis& diagnosis,
                                         const std::string& command_line);
 

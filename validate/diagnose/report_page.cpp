@@ -20,10 +20,10 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr std::size_t kBars = 12;  // maximum number of plotted hypotheses; the table holds all
+constexpr std::size_t kBars = 12;  // maximum number of plotted hypotheses; the table shows all
 constexpr const char *kTorque = "Inferred missing torque, added to Tm",
                      *kField = "Inferred missing field voltage, added to Efd";
-constexpr std::size_t kLeastProbable = 4;  // number of plotted explanations if the set is smaller
+constexpr std::size_t kLeastProbable = 4;  // minimum number of plotted explanations
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 std::string value_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
@@ -95,7 +95,8 @@ class DiagnosisPage {
  private:
   [[nodiscard]] bool with_after() const { return figures_.after != nullptr; }
 
-  /// Adds the verdict, and the worst event before and after: with the added effect, or else refitted.
+  /// Adds the verdict, and the worst event with the submitted model and with the added effect. Without an
+  /// added effect, the refitted model is shown instead.
   void opening() {
     compare::FirstScreen screen{headline(d_), {d_.sentence}, tone(d_)};
     if (!played_.empty()) screen.before = &played_.front();
@@ -104,7 +105,7 @@ class DiagnosisPage {
     screen.next = next_command(d_, rows_);
     compare::first_screen(page_, screen);
   }
-  /// Adds both verdicts of the exit code, and the errors of the refitted model with their limits.
+  /// Adds both verdicts, and the errors of the refitted model with their limits.
   void limits() {
     if (played_.empty()) return;
     page_.section("Verdicts");

@@ -1,5 +1,5 @@
 #pragma once
-// Terminal report of a diagnosis: verdict, inferred inputs, and every fitted hypothesis.
+// Terminal report of a diagnosis: verdict, inferred inputs, leading hypotheses, and fitted parameters.
 #include <string>
 
 #include "validate/diagnose/diagnose.hpp"

@@ -13,10 +13,10 @@ namespace {
 
 /// Number of leading extensions from which the given model is refitted.
 constexpr std::size_t kWaysOut = 2;
-/// Maximum number of fits until convergence of a given model that nearly fits.
+/// Maximum number of fits for one noise measurement, if the given model nearly fits but has not converged.
 constexpr int kBaseRounds = 4;
-/// Maximum number of noise measurements through a given model whose residual is little more than noise. Noise
-/// of the voltage biases a fit, and a less biased fit gives another noise estimate.
+/// Maximum number of noise measurements through a given model whose residual slightly exceeds noise. Noise of
+/// the voltage biases a fit, and a less biased fit gives another noise estimate.
 constexpr int kMeasured = 3;
 
 /// Returns whether further steps of the model's fit might reduce the residual to noise.
@@ -41,8 +41,8 @@ fit::Fit from_extensions(const hypothesis::BaseModel& base_model,
     if (ranked[k].fitted) hypothesis::try_from(base_model, ranked[k].fit, base);
   return std::move(base.fit);
 }
-/// Returns chi2 of each plant, each event at its entry of `states`; infinite if a plant cannot be simulated.
-/// The plants differ only in parameter values and are simulated in SIMD batches.
+/// Returns chi2 of each plant over all events, with the event states `states`; infinite if the simulation
+/// fails. The plants differ only in parameter values and are simulated in SIMD batches.
 std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
                                  const sim::Conventions& conventions, const noise::WhitenedEvents& events,
                                  const std::vector<event::EventState>& states) {
@@ -58,8 +58,8 @@ std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
   return chi2;
 }
 
-/// Fits the model from the best single change of one parameter. A limit that is never reached has zero
-/// gradient.
+/// Refits the model after the best change of a single parameter. This corrects a wrong limit that is never
+/// reached: its gradient is zero, so that a fit alone does not change it.
 fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
   constexpr std::array kMultiples = {0.3, 0.5, 0.7, 0.85, 1.2, 1.4, 2.0, 3.3};
   const auto free = fit::free_parameters(base_model.plant, base_model.prior_sd);

@@ -15,10 +15,10 @@ void require_fitted(const fit::Fit& base, const plant::PlantModel& model);
 void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fit::FitOptions from,
               Diagnosis& d);
 
-/// Returns a start from which the given model fits much better than in `d`; empty if none is found. Two kinds
-/// of starts are tried. The leading extensions may have escaped from a poor local optimum. If a free input
-/// explains more than any extension, a limit that was never reached may be wrong, because its gradient is
-/// zero.
+/// Returns a start from which the given model fits much better than in `d`; empty if none is found. First
+/// tries the fits of the leading hypotheses, which may have escaped from a poor local optimum. If an inferred
+/// input explains more than any hypothesis, then tries the best change of a single parameter. A limit that is
+/// never reached may be wrong, and a fit cannot correct it because its gradient is zero.
 std::optional<fit::FitOptions> better_start(const hypothesis::BaseModel& base_model, const Diagnosis& d);
 
 }  // namespace swingbank::validate::diagnose

@@ -1,7 +1,6 @@
 #pragma once
 // False-positive rate of the last blind test (docs/reference/blind-test-results.md), which is shown with each
-// verdict. It changes together with the document after new cases, never after inspection of cases that were
-// already judged.
+// verdict. It is updated together with this document after new cases, never after inspection of judged cases.
 #include <string>
 
 #include "base/rate.hpp"
@@ -12,7 +11,8 @@ namespace swingbank::validate::diagnose {
 /// seeds 400997928, 138707171, 1497583896 and 490966968.
 inline const Rate kFalsePositives{1, 310};
 
-/// Returns "In k of n blind cases in which nothing was hidden an effect was named (95 % interval a to b %)."
+/// Returns "False positives of the diagnosis: k of n blind cases without a hidden effect (95 % interval
+/// ...)."
 std::string false_positive_note();
 
 }  // namespace swingbank::validate::diagnose

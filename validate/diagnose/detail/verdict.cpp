@@ -17,9 +17,9 @@ namespace swingbank::validate::diagnose {
 namespace {
 
 constexpr double kEffectShownFrom = 0.01;    ///< minimum probability of a single effect in the sentence
-constexpr std::size_t kPairsInSentence = 3;  ///< page and table show all pairs
+constexpr std::size_t kPairsInSentence = 3;  ///< maximum number of pairs in the sentence; the table shows all
 
-/// Returns the evidence that an explanation with so many effects needs to be as probable as one without.
+/// Returns the evidence at which an explanation with these effects is as probable as the model without them.
 double price(const hypothesis::Hypothesis& h) {
   return thresholds::evidence.accepted + (h.with.empty() ? 0.0 : thresholds::evidence.second.value);
 }
@@ -47,8 +47,8 @@ void weigh(Diagnosis& d) {
   d.probabilities = hypothesis::posterior(std::move(all), std::max({worth(d.torque), worth(d.field), line}));
 }
 
-/// Returns the measures of the refitted model's residual; `torque` and `field`: evidence of the inputs, if
-/// known yet.
+/// Returns the measures of the refitted model's residual. `torque` and `field`: evidence of the inferred
+/// inputs; 0 if not yet known.
 thresholds::Refitted left_by(const Diagnosis& d, double torque, double field) {
   return {d.base.reduced_chi2(), noise::slow_remainder(d.base.events, d.events),
           noise::strongest_line(d.base.events, d.events).explains, torque, field};
@@ -69,8 +69,8 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-/// Describes the fall of the error on unseen events. If an effect appears in one event only, no other event
-/// can predict it; the errors are then those of the fit to this event.
+/// Describes the decrease of the error on held-out events. If an effect acts in one event only, no other
+/// event can predict it; the errors are then those of the fit that includes this event.
 std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& best) {
   double saved = 0, before = 0, after = 0;
   for (const auto& h : best.held_out) {
@@ -97,7 +97,7 @@ double probability_of_nothing_missing(const Diagnosis& d) {
   return sum;
 }
 
-/// Returns that nothing is missing, and the wrong parameters if they are few.
+/// Returns the sentence that nothing is missing, with the wrong parameters if they are few.
 std::string adequate_sentence(const Diagnosis& d) {
   const std::string probable = report::probability_text(probability_of_nothing_missing(d));
   if (d.wrong)
@@ -120,20 +120,20 @@ std::string with_probabilities(std::span<const hypothesis::Explanation> some) {
         fmt::format("{}{} ({})", text.empty() ? "" : ", ", e.name, report::probability_text(e.probability));
   return text;
 }
-/// Returns the same for a set; of many pairs, only the first ones.
+/// Returns the same for a set. If the set contains many pairs, only the first ones are listed.
 std::string set_text(std::span<const hypothesis::Explanation> set, bool pairs) {
   if (!pairs || set.size() <= kPairsInSentence) return with_probabilities(set);
   return fmt::format("{} and {} more", with_probabilities(set.first(kPairsInSentence)),
                      set.size() - kPairsInSentence);
 }
 
-/// Returns the explanations of the set.
+/// Returns the explanations of the credible set.
 std::span<const hypothesis::Explanation> credible_set(const Diagnosis& d) {
   return std::span(d.probabilities).first(hypothesis::credible(d.probabilities));
 }
 
-/// Returns for example "Each effect by itself: IEEET1 (62 %), IEEEG1 (44 %).". Each probability is the sum
-/// over all explanations with the effect.
+/// Returns for example "Probability of each effect: IEEET1 (62 %), IEEEG1 (44 %).". Each probability is the
+/// sum over all explanations with the effect.
 std::string by_effect_sentence(const Diagnosis& d) {
   std::vector<hypothesis::Explanation> alone;
   const auto count = [&](const std::string& name, double probability) {
@@ -158,7 +158,7 @@ bool names_an_effect(const Diagnosis& d) {
   return std::ranges::any_of(credible_set(d), [](const auto& e) { return e.place >= 0; });
 }
 
-/// Withdraws acceptances if other explanations make up the set.
+/// Withdraws all acceptances, because other explanations form the credible set.
 void refuse_all(Diagnosis& d) {
   for (hypothesis::Judgement& j : d.ranked) {
     if (!j.accepted) continue;

@@ -13,18 +13,18 @@ void settle(const user_model_search::Unexplained& judged, const event::Progress&
 /// Sets the verdict of an interrupted diagnosis: completed fits are kept, and no hypothesis is judged.
 void interrupt(Diagnosis& d);
 
-/// Returns how evidence is converted to the probabilities of the explanations.
+/// Returns a note on how evidence is converted to the probabilities of the explanations.
 std::string tempering_note();
 
 /// Returns the first preliminary result: the residual of the refitted model.
 std::string first_sentence(const Diagnosis& d, double adequate);
-/// Returns the small set of wrong parameters that explains the records.
+/// Returns the preliminary result with the small set of wrong parameters that explains the records.
 std::string wrong_sentence(const Diagnosis& d);
-/// Returns the same with table and JSON; empty if there is no small set.
+/// Returns the small set of wrong parameters for table and JSON; empty if there is none.
 std::optional<calibrate::WrongParameters> wrong_parameters(const Diagnosis& d);
-/// Returns the side on which an effect is missing, by the inferred inputs.
+/// Returns the preliminary result on the side at fault, from the inferred inputs.
 std::string side_sentence(const Diagnosis& d);
-/// Returns the leading hypotheses after their fits.
+/// Returns the preliminary result with the leading hypotheses after their fits.
 std::string leading_sentence(const Diagnosis& d);
 
 }  // namespace swingbank::validate::diagnose
