@@ -43,7 +43,7 @@ std::vector<compare::Window> windows_of(const Test& t, const Record& r) {
   return all;
 }
 
-/// Adds a problem for the event and for each window of the tests file that reaches beyond the record.
+/// Adds a problem if the event or a window of the tests file reaches beyond the record.
 void check_windows(const Test& t, const Record& r, Problems& problems) {
   const double slack = r.step(), from = r.t.front(), to = r.t.back();
   const auto check = [&](double a, double b, const std::string& what) {

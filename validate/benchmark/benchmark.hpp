@@ -14,7 +14,7 @@ struct TestResult {
   compare::EventComparison event;           ///< reference ("measured") and model in the test's windows
   std::vector<compare::JudgedErrors> rows;  ///< errors per channel and window; only P and Q have limits
   compare::Fitness fitness;                 ///< verdict on P and Q against the limits
-  std::string failure;                      ///< why the simulation of the model failed; empty: it did not
+  std::string failure;                      ///< reason of a failed simulation; empty if it succeeded
   /// Whether the model passes.
   [[nodiscard]] bool passes() const { return failure.empty() && fitness.not_judged.empty() && fitness.fit; }
 };

@@ -39,8 +39,8 @@ struct Test {
   double event = 0;                             ///< beginning of the disturbance [s of the record]
   std::optional<double> end = {};               ///< its end [s]; none: permanent
   std::optional<double> size = {};              ///< change [size_unit()]; powers in pu of the plant's MVA
-  std::optional<Interval> pre = {}, post = {};  ///< windows; none: the record before and after the event
-  std::optional<Interval> during = {};          ///< window; none: from event to end, if there is an end
+  std::optional<Interval> pre = {}, post = {};  ///< windows; empty: the record before and after the event
+  std::optional<Interval> during = {};          ///< window; empty: from `event` to `end`, if there is an end
   std::filesystem::path record = {};            ///< file of the record; empty: see find_records()
   std::string where;                            ///< place in the file, "tests.toml:12:1"
   /// Returns the end of the disturbance, or its beginning if it is permanent [s].

@@ -105,7 +105,7 @@ class Calibrating {
   void report(event::Phase phase, int done, int total) const {
     if (options_.progress) options_.progress(phase, "", done, total);
   }
-  /// Fits the state of every event by itself, with fixed parameters.
+  /// Fits the state of each event separately, with fixed parameters.
   std::vector<fit::EventFit> each_alone(const sim::plant::Plant& plant, event::Phase phase) const {
     std::vector<fit::EventFit> fits(c_.prepared.size());
     in_parallel(
@@ -213,8 +213,8 @@ class Calibrating {
     c_.fit = *best;
   }
 
-  /// Whitens the fitted plant's response to noise of the played-in voltage by an innovations filter, then
-  /// refits.
+  /// Refits with an innovations filter, which whitens the response of the fitted plant to noise of the
+  /// played-in voltage.
   void whiten_voltage_noise() {
     const sim::plant::PlantUnderTest whole{c_.fit.plant, model_.conventions};
     const auto fits = each_alone(whole.plant, event::Phase::voltage_noise);
@@ -296,15 +296,15 @@ class Calibrating {
   static constexpr int kPullRounds = 12;
   static constexpr double kLongestPull = 0.5;  ///< longest step [prior standard deviations]
   static constexpr double kShortest = 1e-4;    ///< shortest step [prior standard deviations]
-  static constexpr double kClose = 0.1;        ///< distance at which the search ends [standard errors]
-  /// Returns the information without the part that noise alone causes; negative eigenvalues are set to zero.
+  static constexpr double kClose = 0.1;  ///< distance to the solution that ends the search [std. errors]
+  /// Returns the information matrix without the part due to noise; negative eigenvalues are set to zero.
   Eigen::MatrixXd real(const Eigen::MatrixXd& data) const {
     if (pull_.information.size() == 0) return data;
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(data - pull_.information);
     return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
            eigen.eigenvectors().transpose();
   }
-  /// Returns the information of the priors per axis_unit() of `plant`.
+  /// Returns the information matrix of the priors in units of axis_unit() at `plant`.
   Eigen::MatrixXd prior_at(const sim::plant::Plant& plant) const {
     const auto n = static_cast<Eigen::Index>(free_.size());
     if (options_.prior_sd <= 0) return Eigen::MatrixXd::Zero(n, n);

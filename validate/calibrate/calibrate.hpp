@@ -20,14 +20,14 @@ struct GivenStart {
 /// Effort, priors and data of a calibration.
 struct CalibrateOptions {
   double prior_sd = thresholds::parameters.prior_sd;  ///< relative prior standard deviation of the parameters
-  int draws = 24;  ///< random parameter sets evaluated as starts, unless the closed form fits well enough
+  int draws = 24;  ///< number of random parameter sets; not used if the fit from the closed form is adequate
   int starts = 2;  ///< number of the best draws that are refined
   std::uint64_t seed = 1;                     ///< seed of the random draws
   std::vector<std::string> held_out;          ///< record names (or their numbers, from 1) left out of the fit
   std::vector<std::string> fixed;             ///< names of fixed parameters, e.g. "GENROU.Xl"
   std::vector<GivenStart> given;              ///< starts in addition to the model's own values and the draws
   bool only_given = false;                    ///< use only `given` as starts and simulate no further events
-  std::vector<fit::FreeParameter> free = {};  ///< with their priors; empty: chosen_parameters()
+  std::vector<fit::FreeParameter> free = {};  ///< free parameters with priors; empty: chosen_parameters()
   /// Smallest limit of the reduced chi-square. It allows for interpolation errors of the played-in voltage.
   double adequate = thresholds::adequacy.reduced_chi2;
   event::FitEventOptions events = {};  ///< preparation of the records
@@ -40,8 +40,8 @@ struct ChannelScore {
   playin::Output channel;                ///< output that is compared
   std::string unit;                      ///< unit of the errors
   double scale = 1;                      ///< units in 1 pu of the record's base
-  double rms_before = 0, rms_after = 0;  ///< of model - measured [unit]
-  double over_noise = 0;  ///< rms_after / standard deviation of the noise by which the fit weights
+  double rms_before = 0, rms_after = 0;  ///< RMS of model - measured [unit]
+  double over_noise = 0;                 ///< rms_after over the standard deviation of the noise in the fit
 };
 /// Reduced chi-square of one event before and after the calibration.
 struct EventScore {
@@ -112,7 +112,7 @@ struct Calibration {
   std::vector<CalibratedParameter> parameters;        ///< free parameters
   Eigen::MatrixXd correlation;                        ///< correlation of the estimates [parameter][parameter]
   std::vector<UnidentifiedCombination> unidentified;  ///< parameter combinations that are not identified
-  std::vector<Candidate> candidates;                  ///< simulated events of a further measurement
+  std::vector<Candidate> candidates;                  ///< simulated further events
   std::vector<EventScore> events;                     ///< scores of all events, in the order given
   double before = 0, after = 0, limit = 0;            ///< reduced chi-square of the fitted events; its limit
   int starts = 0, agreeing = 0;         ///< number of refined starts; number that reached the best optimum

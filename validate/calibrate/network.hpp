@@ -17,7 +17,7 @@ struct NetworkEstimate {
     std::string name, effect, unit;  ///< name in the dataset ("H", "SEXS.K"); "GENROU"; "s"
     double value = 0;                ///< mean over the records [unit]
     double rms_error = 0,
-           scatter = 0;        ///< RMS error on validation records; deviation between the records [unit]
+           scatter = 0;        ///< RMS error on validation records; standard deviation between records [unit]
     double low = 0, high = 0;  ///< training range [unit]; equal: the parameter was constant
     /// Whether the parameter varied in the training data.
     [[nodiscard]] bool learnt() const { return high > low; }

@@ -21,8 +21,8 @@ using Truth = std::map<std::string, double>;
 Truth read_truth(const std::filesystem::path& file, const plant::PlantModel& model);
 
 /// Estimate by one method, with the reduced chi-square of every event. Switching times and start of each
-/// event are fitted for each method, so that methods differ in parameters only. Only the separate report of
-/// the curve fit uses the prepared ones.
+/// event are fitted for each method, so that methods differ in parameters only. The separate report of the
+/// curve fit does not fit them.
 struct Way {
   std::string name;  ///< name of the method
   /// Estimate of one parameter.

@@ -18,7 +18,7 @@ struct WrongParameters {
   [[nodiscard]] bool is_adequate() const { return found.fit.reduced_chi2() <= adequate; }
 };
 
-/// Selects the parameters that must change. Held-out records are not used. Of the other options it uses
+/// Selects the parameters that must change. Held-out records are not used. The other options used are
 /// `prior_sd`, `fixed`, `events`, `adequate` and `progress`. Throws InputError as calibrate().
 WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<record::Record> records,
                                  const CalibrateOptions& options);

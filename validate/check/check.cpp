@@ -130,7 +130,7 @@ class Check : Findings {
 
   /// Returns false if the record does not contain the steady state from which the model starts.
   bool beginning() {
-    constexpr double kMinBefore = 5, kLeastBefore = 0.1, kShort = 0.5;  // samples; s
+    constexpr double kMinBefore = 5, kLeastBefore = 0.1, kShort = 0.5;  // [samples], [s], [s]
     const double before = r_.t[signals_.onset] - r_.t.front(), n = static_cast<double>(signals_.onset + 1);
     const bool few = !signals_.slow && (n < kMinBefore || before < kLeastBefore);
     // Few samples before a step may lie within a fault, and a record without steps may begin during a swing.

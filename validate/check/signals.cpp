@@ -19,10 +19,9 @@ namespace {
 /// Median magnitude of second differences of Gaussian noise, per standard deviation: 0.6745 sqrt(1 + 4 + 1).
 constexpr double kMedianSecondDifference = 0.6745 * 2.449489742783178;
 
-/// Least-squares line through values at the abscissae 0, 1, 2, …
+/// Least-squares line through values at 0, 1, 2, …: value in the middle, slope, standard deviation about it.
 struct Line {
-  double middle = 0, slope = 0,
-         standard_deviation = 0;  ///< value in the middle; standard deviation about the line
+  double middle = 0, slope = 0, standard_deviation = 0;
 };
 Line fit_line(std::span<const double> y) {
   const auto n = static_cast<double>(y.size());

@@ -16,7 +16,7 @@ struct FitEventOptions {
   ///< threshold of switching::VoltageSteps::detect() [pu]
   double pre_event = 1.0;  ///< length of the steady window of a record without switchings [s]
   switching::StepShape step_shape =
-      switching::StepShape::either;  ///< either: determined from the records (step_shape_of)
+      switching::StepShape::either;  ///< shape of the steps; either: determined from the records
   double mva = 0;  ///< rating of all machines whose power the records contain [MVA]; 0: the model's
   /// P and Q of the model's operating point if the records contain the power of several units [pu on their
   /// base]. The caller, who has the models of all units, then estimates the phase jumps of an integrated

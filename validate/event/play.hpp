@@ -34,9 +34,9 @@ struct EventState {
 /// Options of a playback.
 struct Playing {
   double tolerance = 1e-5;  ///< error per step, relative to 1 + |state|
-  /// Accepts integration steps of 1/40 of the sample interval whatever their error. Shorter steps would only
-  /// resolve limits that are reached and left within one sample. Also fails after 15 steps per sample on
-  /// average.
+  /// If true, integration steps of 1/40 of the sample interval are accepted whatever their error, and the
+  /// playback fails after 15 steps per sample on average. Shorter steps would only resolve limits that are
+  /// reached and left within one sample.
   bool hasty = true;
   /// Relaxes the tolerance of each state according to its effect on the compared channels
   /// (playin::allowances).

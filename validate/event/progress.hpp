@@ -9,7 +9,7 @@ namespace swingbank::validate::event {
 /// Phase of a command, for progress messages.
 enum class Phase {
   playing,  ///< playback of events for the report
-  // calibrate, and add
+  // phases of calibrate and add
   model_as_it_is,   ///< each event with the original model
   parameter_sets,   ///< screening of drawn parameter sets
   starts,           ///< fits from the best parameter sets
@@ -18,11 +18,11 @@ enum class Phase {
   sensitivities,    ///< identifiability of the parameters
   effect_left_out,  ///< each event without the effect
   effect_added,     ///< each event with the effect
-  // sparse parameter selection
+  // phases of the sparse parameter selection
   every_parameter,    ///< fit of all parameters
   parameter_subsets,  ///< fits of growing sets
   subsets_less_one,   ///< fits of the chosen set without each of its parameters in turn
-  // diagnose, and add in part
+  // phases of diagnose, some of them also of add
   base,           ///< fit of the base model
   missing_input,  ///< inference of torque and field voltage
   screening,      ///< screening of the hypotheses
@@ -31,7 +31,7 @@ enum class Phase {
   noise_again,    ///< refits after a new estimate of the noise
   unseen_events,  ///< hold-out tests
   user_models,    ///< user-defined models
-  // diagnose, with a second effect beside the best one
+  // phases of diagnose for a second effect in addition to the best one
   second_screening,    ///< screening
   second_quick_fits,   ///< short fits
   second_full_fits,    ///< fits to convergence

@@ -35,12 +35,13 @@ inline const std::vector<Mistake>& mistakes() {
          return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
        },
        0.015, 0.1},  // an angle that hardly steps fits in either unit
+      // Steps of V hide an angle that is 57 times too small, so the limit is low. This is safe, because an
+      // angle that is 57 times too large fits no sound record.
       {"angle_unit", "with theta in radians they fit", "name the column theta_rad",
        [](const Reading& x) {
          return Reading{x.V, x.theta / constants::degree, x.P, x.Q};
        },
-       0.006},  // low: steps of V hide an angle 57 times too small. It is safe: 57 times too large fits no
-                // record
+       0.006},
       {"q_sign", "with the sign of Q changed they fit", "change the sign of Q",
        [](const Reading& x) {
          return Reading{x.V, x.theta, x.P, -x.Q};

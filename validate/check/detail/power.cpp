@@ -99,7 +99,7 @@ namespace {
 /// three are positive and exceed the noise. Behind E'' and X'', Q = V (E'' cos(delta) - V) / X''. Q falls
 /// where V rises if the sum of the two values of V exceeds E'', which is below 1.3 pu.
 double change_of_Q(const record::Record& r, const std::vector<switching::StepInterval>& steps, double noise) {
-  constexpr double kLargestE = 1.3, kSure = 5;  // pu; standard deviations
+  constexpr double kLargestE = 1.3, kSure = 5;  // [pu], [standard deviations]
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [early, late] : {std::pair<std::size_t, std::size_t>{0, 0}, {0, 1}, {1, 0}}) {
     double product = 0, square = 0;

@@ -20,6 +20,7 @@ struct BaseSlip {
 };
 std::vector<BaseSlip> base_slips(const record::Record& record, const PlantFacts& plant);
 
+/// Message about doubtful values of a record.
 struct Doubt {
   std::string what, why, remedy;
 };

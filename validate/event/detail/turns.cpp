@@ -51,7 +51,7 @@ struct Peak {
 };
 
 /// Returns f at the samples of the peak: extrapolated from the samples before it until `begin`, and from
-/// those after it since `end` [s], with a straight line between.
+/// those after it since `end` [s]; linear between both.
 std::vector<double> extrapolate(const record::Record& r, const Peak& p, double begin, double end) {
   const auto [from, to] = std::pair(p.from, p.to);
   const Line before(r, from - p.before, from), after(r, to, to + p.after);
