@@ -39,7 +39,7 @@ struct CalibrateOptions {
 struct ChannelScore {
   playin::Output channel;                ///< output that is compared
   std::string unit;                      ///< unit of the errors
-  double scale = 1;                      ///< units in 1 pu of the record's base
+  double scale = 1;                      ///< value of 1 pu of the record's base [unit]
   double rms_before = 0, rms_after = 0;  ///< RMS of model - measured [unit]
   double over_noise = 0;                 ///< rms_after over the standard deviation of the noise in the fit
 };

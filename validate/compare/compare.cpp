@@ -109,7 +109,7 @@ void measure_channels(const plant::PlantModel& model, PlaybackInput input,
           frequency_of(e.record.t, e.record.theta, base.frequency),
           frequency_of(e.record.t, e.playback.theta, base.frequency));
   }
-  const double per_machine = model.plant.mva / base.mva;  // floors are on the machine's base
+  const double per_machine = model.plant.mva / base.mva;  // noise floors are in pu of the machine
   const auto add_output = [&](playin::Output o, const std::vector<double>& measured,
                               const std::vector<double>& modelled, bool starts_at_mean, bool judged) {
     const ChannelUnit u = channel_unit(o, base);
@@ -170,8 +170,8 @@ bool explained(const EventComparison& e) {
   return judge(one).adequate;
 }
 
-/// Returns whether `other` has smaller errors than `than`: mean ratio of the squared RMS of judged channels
-/// < 1.
+/// Returns whether `other` has smaller errors than `than`: the mean ratio of their squared RMS over the
+/// judged channels is below 1.
 bool is_closer(const EventComparison& other, const EventComparison& than) {
   double ratios = 0, judged = 0;
   for (std::size_t c = 0; c < than.channels.size(); ++c) {
@@ -182,7 +182,7 @@ bool is_closer(const EventComparison& other, const EventComparison& than) {
   return ratios < judged;
 }
 
-/// Describes the fit of the switching times. `failed`: reason why it failed; empty if it did not.
+/// Describes the fit of the switching times. `failed`: reason of a failed fit, otherwise empty.
 std::string describe_fit(const EventComparison& e, bool tried, const std::string& failed) {
   const std::string what =
       e.record.component == record::Component::plant ? "P and Q" : "the compared signals";

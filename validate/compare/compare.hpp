@@ -25,7 +25,7 @@ struct WindowError {
 /// Measured and simulated time series of one channel, with its errors and noise.
 struct ChannelComparison {
   std::string name, unit;                            ///< "P" in "MW", "speed" in "mHz"
-  double scale = 1;                                  ///< units in 1 pu
+  double scale = 1;                                  ///< value of 1 pu [unit]
   std::vector<double> measured, modelled, residual;  ///< [pu]
   double noise = 0;                  ///< standard deviation of the pre-event residual [pu]; 0: no noise found
   WindowError whole;                 ///< the whole record
@@ -71,8 +71,9 @@ struct CompareOptions {
   /// improvement, the midpoint of the interval is kept.
   bool fit_switchings = true;
   switching::StepShape step_shape =
-      switching::StepShape::either;  ///< filtering of steps; either: decided from the record
-  /// Called before each step of the comparison: next step, steps done, total steps.
+      switching::StepShape::either;  ///< shape of the steps; either: determined from the record
+  /// Called before each step of the comparison with the next step and the numbers of completed and of all
+  /// steps.
   event::Progress progress = {};
   playin::PlayInOptions play_in;  ///< samples after its `until` are left out of the comparison
 };
@@ -80,7 +81,7 @@ struct CompareOptions {
 /// Unit of a channel in reports, and its noise floor.
 struct ChannelUnit {
   std::string name;  ///< unit, "MW"
-  double scale;      ///< units in 1 pu
+  double scale;      ///< value of 1 pu [unit]
   double floor;      ///< noise floor from interpolation, for records without noise [pu]
 };
 /// Returns the unit of an output, given the record's bases.
@@ -89,7 +90,7 @@ ChannelUnit channel_unit(playin::Output output, const record::RecordBase& base);
 /// Name, unit and evaluation rules of one channel.
 struct ChannelRule {
   std::string name, unit;  ///< name of the channel; its unit
-  double scale;            ///< units in 1 pu
+  double scale;            ///< value of 1 pu [unit]
   double floor;            ///< noise floor from interpolation, for records without noise [pu]
   bool starts_at_mean;     ///< the model starts at this channel's pre-event mean
   bool judged = true;      ///< whether the verdict uses the channel
@@ -129,7 +130,7 @@ EventComparison compare_event(const plant::PlantModel& model, const Measurement&
 EventComparison compare_event(const plant::PlantModel& model, record::Record record,
                               const CompareOptions& options = {});
 
-/// Response of one channel to the inputs of a comparison, without the error map.
+/// Response of one channel in a repeated playback, without error map.
 struct ReplayedChannel {
   std::vector<double> modelled;  ///< [pu]
   double noise = 0;              ///< standard deviation of the pre-event residual [pu]
@@ -146,7 +147,7 @@ struct Adequacy {
   int bins = 0, exceeding = 0;  ///< bins of all maps and whole records; bins above their bound
   int vague = 0;                ///< bins in which noise alone may exceed the channel's nominal value
   std::string sentence;         ///< verdict, criterion and the bin nearest to its bound or furthest above it
-  thresholds::Ruling ruling;    ///< Criterion::bins
+  thresholds::Ruling ruling;    ///< ruling by Criterion::bins
 };
 /// Sets the bounds of all maps and judges the model. It is adequate if no time-frequency bin, no window over
 /// all frequencies and no whole record exceeds its noise bound, at a joint false-alarm probability of

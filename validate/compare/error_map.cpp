@@ -16,7 +16,7 @@ constexpr Band kBands[] = {{"< 0.1 Hz", 0.0, 0.1},
                            {"0.8–3 Hz", 0.8, 3.0},
                            {"> 3 Hz", 3.0, std::numeric_limits<double>::infinity()}};
 
-/// Returns the biased autocovariance of x (sum over n) at lags 0 ... most.
+/// Returns the biased autocovariance of x (sum divided by n) at lags 0 ... most.
 std::vector<double> autocovariance(std::span<const double> x, int most) {
   const auto n = x.size();
   const double mean = std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(n);
@@ -70,7 +70,7 @@ class Cosines {
       for (std::size_t i = 0; i < n_; ++i)
         folded[i % 2 == 0 ? i / 2 : n_ - 1 - i / 2] = {series[s][i], pair ? series[s + 1][i] : 0.0};
       if (n_ == 1)
-        modes = folded;  // kissfft reads past the end of one sample
+        modes = folded;  // kissfft reads out of bounds if there is only one sample
       else
         fft_.fwd(modes, folded);
       for (std::size_t k = 0; k < n_; ++k) {
@@ -94,7 +94,7 @@ class Cosines {
       const double overlap = k == 0 ? m / n : (m * table_[angle % (4 * n_)] - sine(angle) / sine(2 * k)) / n;
       sum += 2 * noise.covariance[lag] * overlap;
     }
-    return std::max(sum, 1e-3 * noise.covariance[0]);  // a truncated covariance can cancel
+    return std::max(sum, 1e-3 * noise.covariance[0]);  // a truncated covariance may give a negative sum
   }
 
  private:

@@ -43,7 +43,7 @@ ChannelNoise white_noise(double sigma);
 struct TimeFrequencyBin {
   /// Number of independent components; 0: the window is too short for the band.
   int values = 0;
-  double rms = 0;  ///< of the residual's components in window and band [pu]
+  double rms = 0;  ///< RMS of the residual's components in window and band [pu]
   /// Normalised RMS: square root of the mean of \f$ c_k^2 / \mathrm{var}(c_k) \f$ over the components, with
   /// variances under coloured noise; 1 for noise alone. It differs from rms / sigma, because a window or band
   /// contains only a part of the noise.
@@ -62,7 +62,7 @@ struct ErrorMap {
   /// Bins of one window.
   struct Row {
     TimeFrequencyBin all;                 ///< every frequency, the mean included
-    std::vector<TimeFrequencyBin> bands;  ///< as error_bands()
+    std::vector<TimeFrequencyBin> bands;  ///< in the order of error_bands()
   };
   std::vector<Row> rows;   ///< one per window
   TimeFrequencyBin whole;  ///< all windows, all frequencies
@@ -92,8 +92,8 @@ ErrorMap error_map(std::span<const double> t, std::span<const double> residual,
 /// square root of the F distribution's quantile. `freedom` = 0 means a known variance.
 double noise_bound(int values, int freedom, double probability);
 
-/// Sets the bound of every bin of all maps so that noise alone exceeds any of them with at most `probability`
-/// (Bonferroni).
+/// Sets the bound of every bin of all maps so that noise alone exceeds any of the bounds with a probability
+/// of at most `probability` (Bonferroni).
 void set_bounds(std::span<ErrorMap* const> maps, double probability);
 
 }  // namespace swingbank::validate::compare

@@ -139,7 +139,7 @@ report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
     if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
   std::vector<std::string> windows = {"pre-event", "fault", "0–1 s after", "1–5 s after", "> 5 s after"};
   for (const auto& m : maps)
-    for (const Window& w : *m.windows)  // names in records without a switching
+    for (const Window& w : *m.windows)  // records without a switching have other window names
       if (std::ranges::find(windows, w.name) == windows.end()) windows.push_back(w.name);
   for (const auto& channel : channels)
     for (const auto& window : windows) {

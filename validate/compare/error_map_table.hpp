@@ -13,7 +13,7 @@ struct EventComparison;
 /// Error map with the names and units of its figures.
 struct LabelledMap {
   std::string event, channel, unit;              ///< names of event and channel; unit of the RMS
-  double scale = 1;                              ///< units in 1 pu
+  double scale = 1;                              ///< value of 1 pu [unit]
   const std::vector<Window>* windows = nullptr;  ///< windows of the map
   const ErrorMap* map = nullptr;                 ///< errors of this channel
   double size = 0;                               ///< nominal value [pu]; 0: unknown

@@ -256,8 +256,8 @@ std::string next_command(const report::Provenance& rows, const std::string& comm
   std::string line = rows.front().second;
   for (const auto& [name, value] : rows)
     if (name == "command") line = value;
-  const auto begin = line.find(' ');                                                // after the program
-  const auto end = begin == std::string::npos ? begin : line.find(' ', begin + 1);  // after its command
+  const auto begin = line.find(' ');                                                // end of the program name
+  const auto end = begin == std::string::npos ? begin : line.find(' ', begin + 1);  // end of the command name
   if (end == std::string::npos) return {};
   std::string rest = line.substr(end);
   if (const auto out = rest.find(" --out "); out != std::string::npos) {

@@ -10,14 +10,16 @@
 
 namespace swingbank::validate::compare {
 
-/// Table of the normalised RMS per event, channel, window and band, and of the RMS per window in units.
+/// Table of the normalised RMS per event, channel, window and band, and of the RMS per window in the
+/// channel's unit.
 report::Table error_map(const std::vector<EventComparison>& events);
 
 /// Terminal text: verdicts, usability, next step, errors, titles and notes; with `verbose` also every table.
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                             const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,
                             bool verbose);
-/// JSON of everything but the samples, with add_report(); values in pu, with bases and units.
+/// JSON of all results except the samples, including the part of add_report(). Values are in pu, with bases
+/// and units.
 std::string json_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                         const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,
                         const report::Provenance& provenance);

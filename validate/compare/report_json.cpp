@@ -15,7 +15,7 @@ std::string value_of(const report::Provenance& rows, const std::string& name) {
   return row == rows.end() ? "" : row->second;
 }
 
-/// Adds the use of each event, and the events that the command's own part lacks.
+/// Adds the use of each event, and the events that are missing in the command's own part.
 void add_events(nlohmann::json& result, const CommandPage& page) {
   nlohmann::json& events = result["events"];
   if (!events.is_array()) events = nlohmann::json::array();

@@ -182,8 +182,8 @@ class Diagnoser {
         2, infer, [&](int done) { report(event::Phase::missing_input, "", done, 2); }, threads_);
   }
 
-  /// Judges the leading hypotheses. Then tries pairs with the companion of the controls. If none is accepted,
-  /// tries pairs with the best single hypothesis or, if that is not accepted, with the best two.
+  /// Judges the leading hypotheses. Then tries pairs with the companion effect (beside_companion). If no pair
+  /// is accepted, tries pairs with the best single hypothesis or, if that is not accepted, with the best two.
   void search() {
     const hypothesis::BaseModel base_model = present_model();
     judge_leading(result_.ranked);
@@ -200,7 +200,7 @@ class Diagnoser {
     try_alone(pairs);
     const auto unneeded = [&](const hypothesis::Judgement& j) { return !j.accepted || !needed(j); };
     std::erase_if(pairs, unneeded);
-    if (!pairs.empty()) {  // the first effect was selected without the second one
+    if (!pairs.empty()) {  // the first effect was selected without the second one: try other first effects
       std::vector<hypothesis::Judgement> others = exchanged(base_model, pairs.front());
       std::ranges::move(beside_second(base_model, pairs.front()), std::back_inserter(others));
       std::erase_if(others, unneeded);

@@ -21,7 +21,7 @@ namespace swingbank::validate::diagnose {
 enum class Verdict {
   adequate,     ///< the residual is noise
   missing,      ///< one effect is missing and named
-  confusable,   ///< one of several effects, whose probabilities sum to 95 %
+  confusable,   ///< several effects explain the records; their probabilities sum to 95 %
   unexplained,  ///< no known effect explains the records
   interrupted,  ///< stopped by the user; no hypothesis is judged
 };
@@ -35,7 +35,7 @@ struct Diagnosis {
   thresholds::Ruling ruling;            ///< the criterion that decided whether the model is adequate
   std::string sentence;                 ///< the verdict in words
   std::vector<std::string> effects;     ///< name of one effect, or names of several that act together
-  std::vector<std::string> equivalent;  ///< the other names in the 95 % set
+  std::vector<std::string> equivalent;  ///< the other effects in the 95 % credible set
   /// Every explanation that was not rejected, most probable first.
   std::vector<hypothesis::Explanation> probabilities;
   hypothesis::Decision would_decide;  ///< measurements that would separate the explanations
@@ -49,7 +49,7 @@ struct Diagnosis {
   /// User-defined models, tried if no known effect explains the records.
   user_model_search::UserModelSearch user_models;
   std::vector<hypothesis::Judgement> ranked;  ///< in descending order of evidence; accepted ones first
-  noise::WhitenedEvents events;               ///< with the noise model of all fits
+  noise::WhitenedEvents events;               ///< events with the noise model of all fits
   sim::Conventions conventions;               ///< conventions of the model
   double seconds = 0;                         ///< elapsed time [s]
 };
@@ -60,9 +60,9 @@ struct DiagnoseOptions {
   double prior_sd = thresholds::parameters.prior_sd;
   /// Reduced chi-square up to which the residual counts as noise.
   double adequate = thresholds::adequacy.reduced_chi2;
-  int threads = 0;                     ///< 0: number of cores
+  int threads = 0;                     ///< number of threads; 0: number of cores
   event::FitEventOptions events = {};  ///< preparation of the records
-  int leading = 9;                     ///< maximum number of hypotheses that are judged on unseen events
+  int leading = 9;                     ///< maximum number of hypotheses that are judged on held-out events
   int firsts = 2;            ///< number of first effects of pairs, if no hypothesis is accepted alone
   event::Progress progress;  ///< recipient of progress messages; empty: none
   /// Called with each preliminary result (the residual, the side, then the leading hypothesis) and the

@@ -41,14 +41,14 @@ double share_inside(const event::FitEvent& e, const std::vector<double>& residua
   }
   return static_cast<double>(inside) / compared;
 }
-/// Returns the shapes of one channel.
+/// Returns the residual shapes of one channel.
 std::vector<std::vector<double>> shapes_of(const noise::VoltageDoubt& doubt, std::size_t channel) {
   std::vector<std::vector<double>> shapes;
   for (const auto& shape : doubt.shapes) shapes.push_back(shape[channel]);
   return shapes;
 }
 
-/// Residual shapes of the played-in voltage's errors, for the models before and after the addition.
+/// Residuals that errors of the played-in voltage may cause, for the models before and after the addition.
 struct Doubts {
   noise::VoltageDoubt before, after;
 };

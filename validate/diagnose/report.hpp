@@ -13,9 +13,9 @@ namespace swingbank::validate::diagnose {
 /// One measured channel of one event, with the refitted model before and after the addition of the missing
 /// effect.
 struct ReportChannel {
-  std::string name, unit;                       ///< name of the channel; its unit
-  double scale = 1, noise = 0;                  ///< units in 1 pu; standard deviation of the noise [pu]
-  double size = 0;                              ///< MVA of the machine for a power, else 1 [pu]
+  std::string name, unit;       ///< name of the channel; its unit
+  double scale = 1, noise = 0;  ///< value of 1 pu [unit]; standard deviation of the noise [pu]
+  double size = 0;              ///< MVA of the machine for a power, else 1 [pu]
   std::vector<double> measured, before, after;  ///< [pu]; `after` is empty without an addition
   compare::ErrorMap map_before, map_after;      ///< error maps without and with the addition
   double inside_before = 0, inside_after = 0;   ///< share of samples inside the 99 % band of the noise
@@ -30,7 +30,7 @@ struct ReportEvent {
 };
 /// Common content of JSON and page.
 struct ReportFigures {
-  const fit::Fit* after = nullptr;  ///< null: no addition
+  const fit::Fit* after = nullptr;  ///< fit of the model with the addition; null: no addition
   std::string after_name;           ///< for example "SEXS", "the inferred field voltage"
   std::vector<ReportEvent> events;  ///< one for each event
 };
@@ -39,7 +39,7 @@ struct ReportFigures {
 /// outlive the result.
 ReportFigures report_figures(const Diagnosis& diagnosis);
 
-/// Returns verdict, evidence, parameters and error maps, without samples (validate/diagnose/README.md).
+/// Returns verdict, evidence, parameters and error maps, without samples.
 nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& diagnosis,
                               const report::Provenance& provenance);
 /// Returns one self-contained page. It contains the JSON (element "figures"), so that programs can read the

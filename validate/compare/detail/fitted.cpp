@@ -49,7 +49,7 @@ void add_doubt(const plant::PlantModel& model, EventComparison& e) {
   event::FitEvent event;
   event.record = e.record;
   event.start = e.playback.start;
-  event.filtered_samples = e.left_out;  // includes samples beside a step
+  event.filtered_samples = e.left_out;  // these include the samples next to a step
   for (std::size_t k = 0; k < e.record.lost.size(); ++k)
     if (e.record.lost[k])
       event.filtered_samples[k] = 0;  // lost samples away from steps are interpolated accurately

@@ -11,7 +11,7 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-/// Number of leading extensions from which the given model is refitted.
+/// Number of leading hypotheses from whose fits the given model is refitted.
 constexpr std::size_t kWaysOut = 2;
 /// Maximum number of fits for one noise measurement, if the given model nearly fits but has not converged.
 constexpr int kBaseRounds = 4;

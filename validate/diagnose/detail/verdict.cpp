@@ -34,7 +34,7 @@ std::string wrong_name(const Diagnosis& d) {
   return fmt::format("{}, but wrong: {}", hypothesis::kNothingMissing, wrong_names(d));
 }
 /// Computes the probabilities of the explanations: the given model, the given model with a few wrong
-/// parameters, every effect that unseen events have not rejected, and none of these.
+/// parameters, every effect that held-out events have not rejected, and none of these.
 void weigh(Diagnosis& d) {
   std::vector<hypothesis::Explanation> all = {{hypothesis::kNothingMissing}};
   if (d.wrong) all.push_back({wrong_name(d), d.wrong_evidence});
