@@ -50,8 +50,8 @@ struct FitEvent : switching::SwitchedRecord {
   void keep_curve();
   /// Returns the played-in voltage with the given switchings.
   [[nodiscard]] playin::VoltageCurve curve(std::vector<switching::Switching> at) const;
-  /// Returns an output or a sensitivity of Response ([output][sample]) as a vector
-  /// [compared sample * channels + channel], minus the measured values if `less_measured`.
+  /// Returns an output or a sensitivity of Response ([output][sample]) at the compared samples, in the order
+  /// [sample * channels + channel]. If `less_measured`, the measured values are subtracted.
   [[nodiscard]] Eigen::VectorXd collected(const std::vector<double>* values, bool less_measured) const;
   /// Returns the recorded samples of a channel, in the unit of Response.
   [[nodiscard]] const std::vector<double>& measured(playin::Output o) const;
