@@ -12,7 +12,7 @@ namespace swingbank::validate::fit {
 /// A free parameter in the coordinate of the search: z = 0 at the start, steps of order 1.
 struct Axis {
   FreeParameter where;      ///< the parameter, with its prior
-  double start, low, high;  ///< of the parameter, in its unit
+  double start, low, high;  ///< start value and bounds [unit of the parameter]
   bool logarithmic;         ///< whether the search moves the parameter's logarithm
   double unit;              ///< parameter units per unit of z; linear axis only
   /// Returns the parameter's value, rounded to 40 binary digits. Parameters at the same bound are then equal

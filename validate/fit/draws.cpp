@@ -13,15 +13,16 @@ namespace {
 
 /// Maximum number of tries per draw.
 constexpr std::uint64_t kRedraws = 20;
-/// Standard deviation of ln(value) in prior standard deviations: of independent values; of values in order,
-/// where gains are uncertain by decades, times and limits by a factor.
+/// Standard deviation of ln(value) in prior standard deviations. kIndependentWidth: even draws. kGainWidth:
+/// gains in odd draws, which are uncertain by decades. kOrderedWidth: all other parameters in odd draws.
 constexpr double kIndependentWidth = 1.2, kGainWidth = 2.0, kOrderedWidth = 0.8;
-/// Share of reduced values, and their factors: log-uniform down to a hundredth.
+/// Share of reduced values, and their largest reduction [decades]; the reduction factor is log-uniform.
 constexpr double kShareOfReduced = 0.25, kDecadesBelow = 2;
-/// Shortest draw of the longest time constant, relative to the length of the records.
+/// Lower limit of the longest time constant, relative to the length of the records.
 constexpr double kShortestDraw = 3e-3;
 
-/// Random numbers of one parameter, and those of the whole draw (beside the first parameter's).
+/// Random streams of one parameter. `whole` belongs to the whole draw and uses the number of the first
+/// parameter.
 enum Stream : std::uint32_t { own, common, reduced, whole, streams };
 
 std::uint32_t stream(std::size_t parameter, Stream which) {

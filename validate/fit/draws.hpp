@@ -1,5 +1,5 @@
 #pragma once
-// Random parameter sets about a plant's values, as starts of a search.
+// Random parameter sets around a plant's values, used as start values of a search.
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -8,18 +8,19 @@
 
 namespace swingbank::validate::fit {
 
-/// Sampler of parameter sets. A draw depends on the stream and its number only.
+/// Sampler of parameter sets. A draw depends only on the random stream and on the number of the draw.
 ///
-/// In even draws every value is independent, and a quarter of them are reduced by up to two decades: a limit
-/// acts only if it is as low as its signal. In odd draws half of the variance is common to all parameters of
-/// a unit, so that points of one curve and a block's times keep their order, and the longest time constant is
-/// log-uniform up to the length of the records, since a longer one has no effect in them.
+/// In draws with an even number, the values are independent. A quarter of them are reduced by up to two
+/// decades, because an upper limit acts only if the signal reaches it. In draws with an odd number, half of
+/// the variance is common to all parameters with the same unit. The points of a curve and the time constants
+/// of a block then keep their order. The longest time constant is log-uniform up to the length of the
+/// records, because a longer one has no effect in them.
 class Draws {
  public:
-  /// `length`: of the records [s]; 0: unknown.
+  /// `length`: length of the records [s]; 0: unknown.
   Draws(sim::plant::Plant plant, std::vector<FreeParameter> free, std::uint64_t stream, double length = 0);
   /// Returns draw `number` < 2^32: values of the free parameters within their search ranges [unit of each].
-  /// A draw that contradicts the checks of its effects is repeated; null if 20 draws do.
+  /// A draw that fails the checks of its effects is repeated; empty after 20 failed attempts.
   [[nodiscard]] std::optional<std::vector<double>> operator()(std::uint64_t number) const;
 
  private:
@@ -33,7 +34,7 @@ class Draws {
   std::uint64_t stream_;
   double length_;
   double longest_ = 0;               ///< longest time constant of the plant's values [s]
-  std::vector<std::uint32_t> unit_;  ///< number of the first parameter with the same unit
+  std::vector<std::uint32_t> unit_;  ///< for each parameter: index of the first one with the same unit
 };
 
 }  // namespace swingbank::validate::fit

@@ -20,11 +20,12 @@ namespace {
 
 using namespace fitting;
 
-/// A search of few steps must not end on refused steps, which need no sensitivities. With at most kFewSteps
-/// steps, kRefusedSteps more are tried.
+/// A search of at most kFewSteps steps may try kRefusedSteps more, so that refused steps do not use up its
+/// iterations. Refused steps are cheap, because they need no sensitivities.
 constexpr int kFewSteps = 4, kRefusedSteps = 3;
 
-/// Counts the steps, and stops the search after enough steps or if the goal is out of reach.
+/// Counts the successful steps. Stops the search after enough of them, on interruption, or if the goal is out
+/// of reach.
 class Steps : public ceres::IterationCallback {
  public:
   Steps(int enough, const Goal& goal) : enough_(enough), goal_(goal) {}
@@ -105,7 +106,7 @@ class Search {
   /// Maximum number of iterations between updates of the reduced chi-square.
   static constexpr int kRound = 4;
 
-  /// Throws the values reached so far, without a simulation of the events.
+  /// Throws InterruptedFit with the values reached so far, without simulating the events again.
   [[noreturn]] void interrupt(Fit fit) const {
     fit.plant = moved(setting_, z_.data());
     collect_parameters(fit);
@@ -131,8 +132,9 @@ class Search {
     }
     return std::max(1.0, chi2 / values);
   }
-  /// Searches for at most `iterations` iterations; returns true if the search converged. Variables at a bound
-  /// are then fixed while the others continue, until the active set repeats.
+  /// Runs at most `iterations` iterations and returns whether the search converged. After each convergence,
+  /// the variables at an active bound are fixed and the search continues, until the active set no longer
+  /// changes.
   bool solve(int iterations, int& done) {
     const int before = done;
     bool converged = search(iterations, done);
@@ -140,11 +142,11 @@ class Search {
            bounds_->activate())
       converged = search(iterations - (done - before), done);
     bounds_->release();
-    for (EventCost* c : costs_) c->look_at(1);  // for the sensitivities of the final errors
+    for (EventCost* c : costs_) c->look_at(1);  // for the standard errors
     return converged;
   }
   bool search(int iterations, int& done) {
-    // A start that cannot be evaluated is reported in the summary; the log line is suppressed.
+    // The summary reports a start that cannot be evaluated; the log line of Ceres is suppressed.
     static const bool quiet = (FLAGS_minloglevel = google::GLOG_FATAL, true);
     static_cast<void>(quiet);
     ceres::Solver::Options o;
@@ -161,7 +163,7 @@ class Search {
     o.num_threads = 1;  // hypotheses run in parallel
     o.initial_trust_region_radius = 1e2;
     o.max_num_consecutive_invalid_steps = 12;
-    // No line search along a step that bounds cut short: it would cost several Jacobians per step.
+    // No line search along steps that a bound cuts short: it would cost several Jacobians per step.
     o.max_num_line_search_step_size_iterations = 0;
     o.update_state_every_iteration = true;  // an interrupted search keeps its best point
     ceres::Solver::Summary summary;
@@ -188,7 +190,7 @@ class Search {
     problem_->AddResidualBlock(cost, nullptr, blocks);
     problem_->AddResidualBlock(new GaussianPrior(state_priors(event), &discrepancy_), nullptr,
                                {states_[e].data()});
-    // A switching time must not reach a sample, because the sample would change sides.
+    // A switching time must not reach a sample, because the sample would then lie on its other side.
     const double edge = 1e-3 * event.record.step();
     std::vector<int> fixed;
     for (std::size_t k = 0; k < event.switchings.size(); ++k) {
@@ -230,7 +232,8 @@ class Search {
     return "its parameters violate a constraint";
   }
 
-  /// Returns the final response, with lenient steps if exact ones fail.
+  /// Returns the response at the end of the search. It is lenient if the fit is lenient and brief, or if the
+  /// exact integration fails.
   playin::Response final_response(std::size_t e, const sim::plant::Plant& plant, const EventState& at) const {
     if (!setting_.lenient || options_.brief) return costs_[e]->response(plant, at, setting_.lenient);
     try {
@@ -253,8 +256,8 @@ class Search {
     }
     fit.fitted += static_cast<int>(z_.size());
   }
-  /// Collects the values and their standard errors from the inverse Hessian, with the events' states
-  /// projected out.
+  /// Collects the values and their standard errors. The errors follow from the inverse Hessian with the
+  /// events' states projected out.
   void collect_parameters(Fit& fit) const {
     const auto n = static_cast<Eigen::Index>(z_.size());
     if (n == 0) return;

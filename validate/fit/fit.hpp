@@ -1,7 +1,7 @@
 #pragma once
-// Bayesian least squares over several events. The plant's free parameters are common to all events; switching
-// times and the initial state belong to one event each. The optimiser is Levenberg-Marquardt (Ceres) on the
-// sensitivities of the playback model.
+// Bayesian least-squares fit of a plant to several events. The plant's free parameters are common to all
+// events. Each event has its own switching times and its own initial state. The optimiser is
+// Levenberg-Marquardt (Ceres) with the sensitivities of the playback model.
 #include <limits>
 #include <optional>
 #include <string>
@@ -17,15 +17,16 @@ namespace swingbank::validate::fit {
 using event::EventState, event::InputKind;
 using noise::EventFit;
 
-/// A parameter that may move. `prior_sd` is its prior standard deviation: relative if the parameter is
-/// positive by nature (the fit then moves its logarithm), otherwise absolute. 0: no prior.
+/// A parameter that a fit may change. `prior_sd` is its prior standard deviation relative to its value; 0: no
+/// prior. The fit moves the logarithm if moves_by_logarithm(), otherwise the value. In place of a value of 0,
+/// the scale is 5 % of the parameter's range, at most 1.
 struct FreeParameter {
   sim::plant::ParameterId id;  ///< parameter of the plant
-  double prior_sd = 0.3;       ///< relative or absolute, see above
+  double prior_sd = 0.3;       ///< relative, see above
 };
 
-/// Returns the parameters of a block that a fit may move. Codes, parameters at zero or at their null value,
-/// and parameters that set the time of an action are left out.
+/// Returns the parameters of a block that a fit may change. Excludes codes, parameters at zero or at their
+/// null value, and parameters that set a switching time of the effect.
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double prior_sd);
 /// The same for all blocks except the instruments.
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double prior_sd);
@@ -40,13 +41,14 @@ struct FittedParameter {
   double start = 0, value = 0;    ///< value before and after the fit [unit]
   double error = 0;               ///< standard error from the curvature [unit]; NaN if the fit is singular
   double low = 0, high = 0;       ///< 95 % interval [unit], within the physical bounds
-  /// At the end of its range, or at an ordering constraint (X''d > Xl). The interval is then not valid.
+  /// Whether the value is at the end of its range or at an ordering constraint (X''d > Xl). The interval is
+  /// then not valid.
   bool at_bound = false;
   std::string active_constraint = {};  ///< the ordering constraint, for example "X''d > Xl"; empty: none
   /// Returns "block.parameter".
   [[nodiscard]] std::string full_name() const { return sim::plant::ParameterName{block, name}.text(); }
-  /// One minus the ratio of posterior to prior variance, 0 to 1. 0: the prior alone determines the value; 1:
-  /// the records alone determine it.
+  /// One minus the ratio of posterior to prior variance, 0 to 1. 0: the prior alone determines the value. 1:
+  /// the records alone determine it, or it has no prior.
   double decided = 0;
 };
 
@@ -59,10 +61,10 @@ struct Fit {
   double chi2 = 0, prior_cost = 0;          ///< chi2 of the data, and of the priors
   int values = 0, fitted = 0;  ///< number of compared values; number of free variables, event states included
   /// Log determinant of the posterior precision in units of the priors' precision (Occam factor). A parameter
-  /// that the records do not determine contributes 0. NaN without errors.
+  /// that the records do not determine contributes 0. NaN if the fit computed no standard errors.
   double occam = 0;
-  /// Part of the fall of chi2 that comes only from lower transfer of the voltage noise than in the reference
-  /// structure. It explains nothing, so data_cost() and criterion() add it back. 0 until
+  /// Reduction of chi2 that results only from a lower transfer of the voltage noise than in the reference
+  /// structure. It is no evidence, so data_cost() and criterion() add it back. 0 before
   /// correct_noise_transfer().
   double transfer_deficit = 0;
   int iterations = 0;      ///< number of iterations
@@ -72,12 +74,12 @@ struct Fit {
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
-/// Returns for example "GENROU.Xdpp (held by X''d > Xl), GENROU.H: at a bound, where the 95 % interval is not
-/// valid."; empty if no parameter is at a bound.
+/// Returns for example "GENROU.Xdpp (limited by X''d > Xl), GENROU.H: at a bound, where the 95 % interval is
+/// not valid."; empty if no parameter is at a bound.
 std::string bounds_text(const std::vector<FittedParameter>& parameters);
 
-/// Returns chi2 of data and priors, the minimised cost once the reduced chi-square is near 1; infinite if the
-/// fit failed.
+/// Returns chi2 of data and priors; infinite if the fit failed. fit() minimises this cost once the reduced
+/// chi-square is near 1.
 double penalised(const Fit& f);
 /// Returns -2 log evidence of the structure by Laplace's approximation (MacKay, Neural Computation 4, 1992,
 /// p. 415), up to a constant common to all structures:
@@ -90,9 +92,9 @@ double criterion(const Fit& f);
 /// Returns chi2 of the data alone, with Fit::transfer_deficit added back; infinite if the fit failed.
 double data_cost(const Fit& f);
 
-/// Sets Fit::transfer_deficit of another structure's fit, at least 0: a higher noise transfer earns no
-/// credit. Every explanation that competes with another must be corrected here, a free input's refitted plant
-/// included. Null: the noise transfer is ignored.
+/// Sets Fit::transfer_deficit of the fit of another structure. It is at least 0, so a higher noise transfer
+/// earns no credit. Every competing explanation must be corrected, including the refit with an unknown input.
+/// Does nothing if `noise_transfer` is null or the fit failed.
 void correct_noise_transfer(const noise::NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
                             Fit& fit);
 
@@ -106,8 +108,8 @@ double gain(const EventFit& from, const EventFit& to);
 bool better(const Fit& a, const Fit& b);
 constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integration; see event::Playing
 
-/// Target of a fit: a penalised cost of at most `cost` within `steps` steps, those of continued fits
-/// included.
+/// Target of a fit: a penalised cost of at most `cost` within `steps` steps. The steps may include those of
+/// later fits that continue this one.
 struct Goal {
   double cost = std::numeric_limits<double>::infinity();  ///< chi2 with the penalty of the priors
   int steps = 0;                                          ///< maximum number of steps
@@ -117,17 +119,17 @@ struct Goal {
 struct FitOptions {
   int iterations = 60;               ///< maximum number of iterations
   double tolerance = kFitTolerance;  ///< of the integration; see event::Playing
-  /// The search integrates with an error allowance for states that the channels do not show, and with
-  /// linearised sensitivities (event::Playing). The sensitivities are corrected by secant updates (Broyden)
-  /// during the search. The final cost is computed without the allowance, the errors with it. A fit that
-  /// cannot be evaluated at the start is repeated with this option.
+  /// The search allows larger integration errors in states that hardly affect the compared channels
+  /// (event::Playing), and linearises the sensitivities. Secant updates (Broyden) correct the sensitivities
+  /// during the search. The final cost is computed without this allowance, the standard errors with it. A fit
+  /// that cannot be evaluated at the start is repeated with this option.
   bool lenient = false;
-  /// The fit is compared only with other brief fits. A lenient fit then keeps the response of its own search
-  /// instead of computing it without the allowance.
+  /// The fit is compared only with other brief fits. The final cost of a lenient fit is then computed with
+  /// the allowance.
   bool brief = false;
   bool steady_start = false;           ///< every event starts in its pre-event steady state
   double enough = 1e-5;                ///< relative change of the cost that ends the fit
-  std::vector<EventState> start = {};  ///< start values of the event states; empty: as prepared
+  std::vector<EventState> start = {};  ///< start values of the event states; empty: those of the FitEvent
   std::vector<double> values = {};     ///< start values of the free parameters; empty: the plant's
   bool errors = true;  ///< computes standard errors, which costs one further evaluation of all sensitivities
   /// The fit ends early if it cannot reach this goal. The prediction assumes that every remaining step
@@ -139,10 +141,11 @@ struct FitOptions {
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
 
 /// Fits the `free` parameters of the plant and every event's own state. If the start cannot be evaluated, the
-/// result has `failed` set; later steps to such points are refused. With a wrong structure the residuals
-/// would outweigh the priors, and parameters would be biased to compensate for the missing effect. The
-/// priors' cost is therefore multiplied by the reduced chi-square reached so far, as if the noise variance
-/// were larger by this factor. The factor falls as the fit improves.
+/// result has `failed` set. Later steps to points that cannot be evaluated are refused.
+///
+/// With a wrong structure the residuals would outweigh the priors, and parameters would be biased to
+/// compensate for the missing effect. The priors' cost is therefore multiplied by the reduced chi-square
+/// reached so far, as if the noise variance were larger by this factor. The factor falls as the fit improves.
 Fit fit(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
         const std::vector<FreeParameter>& free, const FitOptions& options = {});
 

@@ -5,8 +5,8 @@
 
 namespace swingbank::validate::fit {
 
-/// Thrown by fit(), and by functions that call it, on interruption. `reached` holds plant, parameters
-/// (without errors), chi2, belief and values of the best point, but no events.
+/// Exception of fit(), and of functions that call it, on interruption. `reached` contains the plant, the
+/// parameters (without errors), chi2, prior_cost and `values` of the best point, but no events.
 struct InterruptedFit : Interrupted {
   Fit reached;  ///< best point so far
 };

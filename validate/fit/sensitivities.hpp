@@ -7,8 +7,9 @@
 
 namespace swingbank::validate::fit {
 
-/// Returns one unit of a parameter's axis in `information`: one prior standard deviation. Without a prior it
-/// is the magnitude of the value; a value of 0 has a share of its range in place of its magnitude.
+/// Returns the unit of a parameter's axis in `information` [unit of the parameter]: one prior standard
+/// deviation. Without a prior it is the magnitude of the value. In place of a magnitude of 0, 5 % of the
+/// parameter's range is used, at most 1.
 double axis_unit(const sim::plant::Plant& plant, const FreeParameter& parameter);
 
 /// Response of one event with its sensitivities at a point of the fit, per axis_unit and per prior standard
@@ -25,8 +26,9 @@ struct LinearisedEvent {
 LinearisedEvent linearise(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvent& event,
                           const EventState& state, const std::vector<FreeParameter>& free,
                           const event::Playing& how = {});
-/// Returns the standard deviation of the modelled response of one event, as [channel][sample] [pu]: the
-/// uncertainty of the parameters, of this covariance per axis_unit, and that of the event's own state.
+/// Returns the standard deviation of the modelled response of one event: [channel][sample], in pu. It
+/// combines the uncertainty of the parameters with that of the event's own state. `covariance`: of the
+/// parameters, in units of axis_unit().
 std::vector<std::vector<double>> response_deviation(const LinearisedEvent& at, const event::FitEvent& event,
                                                     const Eigen::MatrixXd& covariance);
 
@@ -34,8 +36,8 @@ std::vector<std::vector<double>> response_deviation(const LinearisedEvent& at, c
 struct EventSensitivities {
   Eigen::MatrixXd sensitivities;  ///< [sample * channels + channel][parameter], whitened, per axis_unit
   Eigen::VectorXd residual;       ///< [sample * channels + channel], model - measured, whitened
-  /// Half the gradient of the event's cost with respect to the parameters, minimised over its state with its
-  /// priors.
+  /// Half the gradient of the event's cost with respect to the parameters. The cost includes the priors of
+  /// the event's state and is minimised over this state.
   Eigen::VectorXd score;
   int channels = 0;  ///< number of compared channels
 };
@@ -49,8 +51,8 @@ EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested,
 Eigen::MatrixXd information(const EventSensitivities& e);
 
 /// Returns the covariance of the scores J'r with autocovariances up to `lags` samples (Newey and West,
-/// Econometrica 55, 1987). It holds for coloured noise and for noise of any level. `mean`: expected score of
-/// each sample.
+/// Econometrica 55, 1987). It is valid for coloured noise of any level. `mean`: expected score of each
+/// sample.
 Eigen::MatrixXd score_covariance(const EventSensitivities& e, int lags, const Eigen::VectorXd& mean);
 
 }  // namespace swingbank::validate::fit

@@ -62,10 +62,11 @@ class Selection {
     double taken = chosen.cost;
     for (std::size_t size = 1; size < beams_.size(); ++size) {
       if (stopped()) return back;
-      if (taken - penalised(all_) < options_.each) break;  // no other parameters can earn more
+      if (taken - penalised(all_) < options_.each) break;  // even all parameters would gain too little
       const auto& [refitted, best] = best_of(size);
       report(event::Phase::parameter_subsets, size, beams_.size() - 1);
-      // A set may look poor although the next size contains two parameters that act together.
+      // Two parameters may reduce the cost only together, so one size without enough gain does not end the
+      // search.
       if (taken - refitted.cost > options_.each * static_cast<double>(size - set.size())) {
         taken = refitted.cost;
         chosen = refitted;
@@ -79,8 +80,8 @@ class Selection {
     while (exchange(set, chosen)) {
     }
     std::vector<double> rises = evidence(set, chosen.fit);
-    // A parameter may have earned its place only because the others moved slightly; it is dropped if they are
-    // fixed.
+    // A parameter may have been selected only because the others moved within the tolerance. It is dropped if
+    // its evidence is too low with the others at their given values.
     for (auto least = std::ranges::min_element(rises); least != rises.end() && *least < options_.each;
          least = std::ranges::min_element(rises)) {
       set = without(set, static_cast<std::size_t>(least - rises.begin()));
@@ -128,7 +129,7 @@ class Selection {
                    : (p.value - p.start) / axis_unit(tested_.plant, p.where);
     }
   }
-  /// Prediction of the quadratic model if a set is free and the other parameters keep to the tolerance of a
+  /// Prediction of the quadratic model for a free set, with the other parameters within the tolerance of a
   /// correct value. `excess`: cost above that of the full fit; `at`: location of the optimum; `occam`: log
   /// determinant of the posterior precision (Fit::occam).
   struct Prediction {
@@ -180,11 +181,11 @@ class Selection {
     next.resize(std::min(next.size(), kBeam));
     return next;
   }
-  /// Returns the gain in evidence over the full fit, less the price of each parameter.
+  /// Returns the improvement of the criterion over the full fit, minus SparseOptions::each per parameter.
   [[nodiscard]] double worth(double cost, double occam, std::size_t size) const {
     return criterion(all_) - cost - occam - options_.each * static_cast<double>(size);
   }
-  /// Returns whether even the set with the highest predicted evidence has too little after its refit.
+  /// Returns whether even the most promising size has too low a criterion after its best sets are refitted.
   [[nodiscard]] bool hopeless() {
     if (options_.least == -std::numeric_limits<double>::infinity()) return false;
     double most = -std::numeric_limits<double>::infinity();
@@ -206,16 +207,17 @@ class Selection {
                ? believed * std::exp(z * free_[i].prior_sd)
                : believed + z * axis_unit(tested_.plant, free_[i]);
   }
-  /// A fit with only these parameters free, and its estimated cost if the others move within the tolerance.
+  /// A fit with only the parameters of a set free, and the estimated cost if the others move within the
+  /// tolerance.
   struct Refit {
     Fit fit;
     double cost = std::numeric_limits<double>::infinity();
   };
-  /// Fits a set from its predicted optimum. If the fit does not reach the predicted cost, it is repeated from
-  /// the given values. Of the fit's cost above the full fit, the other parameters would remove the predicted
-  /// share. The quadratic model overestimates the cost of a limit's given value, because a limit that is not
-  /// reached costs nothing more. The estimate is therefore at least the predicted excess, but not above the
-  /// fit's own excess.
+  /// Fits a set from its predicted optimum. A fit that does not reach the predicted cost is repeated from the
+  /// given values. Refit::cost reduces the fit's excess over the full fit by the factor that the quadratic
+  /// model predicts if the other parameters may move. The model overestimates this reduction for a limit,
+  /// because a limit that is not reached has no further effect on the cost. The estimated excess is therefore
+  /// at least the predicted one, or the fit's own if that is lower.
   [[nodiscard]] Refit refit(const Set& set, bool errors = false) const {
     const Prediction fixed = predict(set, kExactly), soft = predict(set);
     FitOptions o = kSearch;
@@ -254,8 +256,8 @@ class Selection {
     set.erase(set.begin() + static_cast<std::ptrdiff_t>(i));
     return set;
   }
-  /// Drops members that the others have made redundant, the least important first. This is needed because
-  /// only few sets of a smaller size were refitted.
+  /// Drops members that the others make redundant, the least important first. They exist because only few
+  /// sets of each smaller size were refitted.
   void drop_idle(Set& set, Refit& chosen) const {
     while (!set.empty()) {
       std::vector<double> evidence;
@@ -325,9 +327,9 @@ class Selection {
     for (const std::size_t i : set) names.push_back(name(i));
     return names;
   }
-  /// Replaces one or two members by a pair, if the pair makes other members redundant. A single parameter may
-  /// compensate for two wrong ones and may then require a third. Example: the gain behind a regulator for the
-  /// regulator's two gains. Returns whether the set changed.
+  /// Replaces members by a pair of parameters, if the pair makes other members redundant. Returns whether the
+  /// set changed. Example: the gain after a regulator may compensate for two wrong gains of the regulator,
+  /// and the fit then needs a third parameter.
   [[nodiscard]] bool exchange(Set& set, Refit& chosen) const {
     as_well_.clear();
     for (const auto& [gone, other] : exchanges(set, chosen)) {
@@ -347,8 +349,8 @@ class Selection {
     return false;
   }
   using Exchange = std::pair<Set, Set>;  ///< removed members, replacement
-  /// Returns one or two parameters that could replace members of the set. A replacement that contains a
-  /// smaller one is left out.
+  /// Returns the replacements of members of the set by one or two other parameters. A replacement that
+  /// contains a smaller one is left out.
   [[nodiscard]] std::vector<Exchange> exchanges(const Set& set, const Refit& chosen) const {
     const double here = predict(set).excess;
     std::vector<Exchange> found;

@@ -16,13 +16,13 @@ struct WrongParameter {
   FittedParameter fit;  ///< start: given value; value and interval: with the other parameters of the set free
   /// Rise of the cost with this parameter at its given value and the rest of the set refitted.
   double evidence = 0;
-  /// Fraction of the excess cost over the full fit that returns with this parameter at its given value.
+  /// `evidence` relative to the cost of the given model above the fit of all parameters, 0 to 1.
   double share = 0;
   /// Names of single parameters that explain the records equally well in its place.
   std::vector<std::string> tied = {};
 };
 
-/// Parameters `instead` that, changed together in place of `named`, explain the records equally well.
+/// Replacement of the parameters `named` by the parameters `instead`, which explain the records equally well.
 struct Alternative {
   std::vector<std::string> named, instead;  ///< full names of the parameters
 };
@@ -41,15 +41,15 @@ struct SparseSelection {
 struct SparseOptions {
   std::size_t most = 8;  ///< maximum size of the set
   double each = 10;      ///< minimum evidence of each parameter [chi2]
-  /// Prior standard deviation of a correct parameter about its given value, relative. Parameters outside the
-  /// set move within it while sets are compared (spike and slab; George and McCulloch, J. Am. Stat. Assoc.
+  /// Relative prior standard deviation of a correct parameter about its given value. Parameters outside the
+  /// set may vary by it while sets are compared (spike and slab; George and McCulloch, J. Am. Stat. Assoc.
   /// 88, 1993, p. 881). The returned fit keeps them at their given values.
   double right = 0.01;
   event::Progress progress = {};  ///< recipient of progress messages; empty: none
   /// Called between sets; if it returns true, no parameter is named.
   std::function<bool()> stop = {};
-  /// A fit of every parameter to these events with this noise model and with errors. Null: the fit is made
-  /// here, and the noise is measured through it.
+  /// A fit of every parameter to these events, with their noise model and with standard errors. Null:
+  /// select_parameters() makes this fit and estimates the noise from its residual.
   const Fit* all = nullptr;
   /// No parameter is named if the criterion improves on the full fit by less than this, after subtracting
   /// `each` for every named parameter.

@@ -17,8 +17,8 @@ inline std::size_t switching_numbers(const event::FitEvent& event) {
 
 /// One unit of a switching time [s].
 inline constexpr double kSwitchScale = 1e-3;
-/// One unit of an angle jump [rad], and its prior standard deviation in such units. An error of one fifth in
-/// a reactance causes a jump error of this size.
+/// One unit of an angle jump [rad], and the prior standard deviation in this unit. An error of 20 % in a
+/// reactance causes an error of about 0.1 rad in the jump.
 inline constexpr double kTurnScale = 1e-3, kTurnPrior = 100;  ///< [rad]; [kTurnScale]
 
 inline constexpr int kStates = 4;  ///< P, Q [pu], angle [rad], speed [pu]
@@ -26,7 +26,7 @@ inline constexpr int kStates = 4;  ///< P, Q [pu], angle [rad], speed [pu]
 inline constexpr std::array<playin::SensitivityParameter::Kind, kStates> kStateKind = {
     playin::SensitivityParameter::Kind::P, playin::SensitivityParameter::Kind::Q,
     playin::SensitivityParameter::Kind::angle, playin::SensitivityParameter::Kind::speed};
-/// One unit of each state in the search, far below any effect and far above rounding.
+/// One unit of each state in the search: far below any observable change and far above rounding errors.
 inline constexpr std::array<double, kStates> kStateScale = {1e-3, 1e-3, 1e-3, 1e-5};
 /// Prior standard deviation of the initial state, in those units: a plant is nearly in steady state before an
 /// event.
@@ -46,7 +46,7 @@ inline std::vector<double> state_priors(const event::FitEvent& event) {
   return all;
 }
 
-/// Returns the event's state in units of the search, without an input.
+/// Returns the event's state in units of the search. The unmodelled inputs of the state are not included.
 inline std::vector<double> state_of(const event::FitEvent& event, const event::EventState& from) {
   std::vector<double> s;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
@@ -71,7 +71,7 @@ inline event::EventState event_state(const event::FitEvent& event, const double*
   return at;
 }
 
-/// Returns the sensitivity parameters of these variables.
+/// Returns the sensitivity parameters of the state variables.
 inline std::vector<playin::SensitivityParameter> state_parameters(const event::FitEvent& event) {
   using Kind = playin::SensitivityParameter::Kind;
   std::vector<playin::SensitivityParameter> along;

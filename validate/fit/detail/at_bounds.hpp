@@ -1,7 +1,7 @@
 #pragma once
-// Active set of bounds in a Ceres problem. Variables at a bound whose gradient points outward are fixed while
-// the others move. Ceres projects steps onto the bounds; a projected step need not reduce the cost, so a
-// search may end before the optimum.
+// Active set of bounds in a Ceres problem. Variables at a bound are fixed while the others move, if a move
+// beyond the bound would reduce the cost. Ceres projects steps onto the bounds. A projected step need not
+// reduce the cost, so a search without an active set may end before the optimum.
 #include <ceres/ceres.h>
 
 #include <map>
@@ -15,8 +15,8 @@ class AtBounds {
   explicit AtBounds(ceres::Problem& problem) : problem_(problem) {}
   /// Fixes these variables of a block for the whole search.
   void fix(double* block, std::vector<int> which);
-  /// Fixes the variables at a bound whose gradient points outward. Returns false if no variable is at a
-  /// bound, or if the active set has not changed.
+  /// Fixes the variables at a bound beyond which the cost would decrease. Returns false if no variable is at
+  /// a bound, or if the active set has not changed.
   bool activate();
   /// Releases the variables of the active set; those of fix() stay fixed.
   void release();

@@ -22,11 +22,12 @@ struct Setting {
   std::vector<Axis> axes;
   double tolerance;
   bool lenient = false;  ///< of the search; see FitOptions
-  bool goes_on = false;  ///< reuses sensitivities that predicted a step well, if lenient
-  /// The start passes can_exist_beside(`plant`); the search then keeps to such plants.
+  bool goes_on = false;  ///< whether a lenient search reuses sensitivities that predicted a step well
+  /// Whether the start passes can_exist_beside(`plant`). If so, the search refuses plants that do not pass.
   bool can_exist = false;
 };
 
+/// Returns the plant with the parameter values of `z`.
 inline sim::plant::Plant moved(const Setting& s, const double* z) {
   sim::plant::Plant plant = *s.plant;
   for (std::size_t i = 0; i < s.axes.size(); ++i)
@@ -34,7 +35,8 @@ inline sim::plant::Plant moved(const Setting& s, const double* z) {
   return plant;
 }
 
-/// Gaussian priors: one residual z/spread per parameter, scaled by the reduced chi-square reached.
+/// Gaussian priors: one residual z / prior_sd per variable, multiplied by the square root of the reduced
+/// chi-square `discrepancy`.
 class GaussianPrior : public ceres::CostFunction {
  public:
   GaussianPrior(std::vector<double> prior_sd, const double* discrepancy)
@@ -58,9 +60,9 @@ class GaussianPrior : public ceres::CostFunction {
   const double* discrepancy_;
 };
 
-/// Penalty on the physical orderings of a machine's parameters (Xd > X'd > ...). It rises from kMargin before
-/// two of them are equal. If the start is nearer, the penalty begins at the start's distance; a start that
-/// violates an ordering is drawn back to it, unless the violation may be intended.
+/// Penalty that enforces the physical orderings of a machine's parameters (Xd > X'd > ...). It acts below a
+/// gap of kMargin between two parameters, or below the start's gap if that is smaller. A start that violates
+/// an ordering is drawn back to it, unless the violation may be intended (Ordering::may_be_meant).
 class Walls : public ceres::CostFunction {
  public:
   Walls(const Setting& setting, const double* discrepancy) : setting_(setting), discrepancy_(discrepancy) {
@@ -76,7 +78,8 @@ class Walls : public ceres::CostFunction {
     mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(setting.axes.size()));
   }
   [[nodiscard]] bool empty() const { return walls_.empty(); }
-  /// Returns the active ordering on the axis at z, for example "X''d > Xl"; empty: none.
+  /// Returns the ordering whose penalty acts on the parameter `axis` at z, for example "X''d > Xl"; empty:
+  /// none.
   [[nodiscard]] std::string active_constraint(std::size_t axis, const double* z) const {
     const sim::plant::Plant plant = moved(setting_, z);
     const auto symbol = [&](int parameter) {
@@ -110,11 +113,11 @@ class Walls : public ceres::CostFunction {
   }
 
  private:
-  static constexpr double kMargin = 0.01;      ///< of ln(greater / smaller)
-  static constexpr double kSteepness = 0.001;  ///< of the same: one unit of reduced chi-square
+  static constexpr double kMargin = 0.01;      ///< limit of the gap ln(greater / smaller)
+  static constexpr double kSteepness = 0.001;  ///< violation of that limit which costs one reduced chi-square
   struct Wall {
     std::array<int, 2> parameters, axes;  ///< greater, smaller; axis -1: that parameter is fixed
-    double foot;
+    double foot;                          ///< gap ln(greater / smaller) below which the penalty acts
   };
   static double gap(const sim::plant::Block& b, const sim::plant::Ordering& o) {
     return std::log(b.p[static_cast<std::size_t>(o.greater)] / b.p[static_cast<std::size_t>(o.smaller)]);

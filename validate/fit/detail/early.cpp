@@ -9,14 +9,15 @@ namespace swingbank::validate::fit::fitting {
 namespace {
 
 constexpr double kFirstPart = 0.5;  ///< end of the first part after the last switching [s]
-/// Ratio of the reduced chi-square of the later part to that of the first part from which a response diverges
-/// [-].
+/// A response diverges if the reduced chi-square of the later part is at least this multiple of that of the
+/// first part [-].
 constexpr double kRunAway = 10;
-/// Share of the later part's residual that other switching times must remove [-].
+/// Share of the later part's reduced chi-square that the fitted switching times must remove [-].
 constexpr double kGone = 0.75;
 constexpr int kEarlySteps = 12;
 
-/// Returns whether any switching time is fitted.
+/// Returns whether the fit may move a switching time. Excludes component records and tests with an open
+/// breaker.
 bool is_open(const event::FitEvent& e) {
   return !playin::is_part(e.record) && !e.record.breaker() &&
          std::ranges::any_of(e.switchings, [](const switching::Switching& s) { return s.uncertainty > 0; });

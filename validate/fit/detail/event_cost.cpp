@@ -23,7 +23,7 @@ bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return a.size() 
 }  // namespace
 
 noise::RowMatrix triangle_of(const noise::RowMatrix& e) {
-  constexpr double kNormRounding = 1e-14;  // of a squared norm
+  constexpr double kNormRounding = 1e-14;  // relative rounding error of a squared norm
   noise::RowMatrix r = e.transpose() * e;
   const Eigen::Index n = r.cols();
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -50,8 +50,7 @@ EventCost::EventCost(const Setting& setting, std::size_t event)
 bool EventCost::Evaluate(double const* const* blocks, double* residuals, double** jacobians) const {
   try {
     return evaluate(blocks, residuals, jacobians);
-  } catch (const Interrupted&) {  // no exception passes through Ceres; the search ends and throws it again
-
+  } catch (const Interrupted&) {  // must not pass through Ceres; the search throws it again at its end
     last_ = {};
     return false;
   }

@@ -11,8 +11,8 @@ namespace swingbank::validate::fit::fitting {
 noise::RowMatrix triangle_of(const noise::RowMatrix& e);
 
 /// Cost of one event. The parameter blocks are the plant's z (absent if no parameter is free) and the event's
-/// state. Ceres uses only products of residuals and sensitivities, so it receives the triangular factor with
-/// these products: one row per column instead of one per value.
+/// state. Ceres uses only products of residuals and sensitivities. It therefore receives the triangular
+/// factor with the same products, which has one row per variable instead of one per compared value.
 class EventCost : public ceres::CostFunction {
  public:
   EventCost(const Setting& setting, std::size_t event);
@@ -34,10 +34,10 @@ class EventCost : public ceres::CostFunction {
   /// Returns the whitened residuals in the last column, and their sensitivities to z and to the state in the
   /// columns before it. Empty if the plant cannot be simulated.
   [[nodiscard]] noise::RowMatrix values(const double* z, const double* state, bool with_sensitivities) const;
-  /// Distributes the prediction error of a step over the columns of the sensitivities. Linearised
-  /// sensitivities are wrong by per cents, which stops a search along nearly collinear columns. Each column
-  /// receives a share proportional to its squared norm (Broyden, Math. Comp. 19, 1965, p. 577, with each
-  /// unknown scaled by its column's norm).
+  /// Distributes the prediction error `missed` of a step over the columns of the sensitivities. Linearised
+  /// sensitivities have errors of a few per cent, which stop a search along nearly collinear columns. Each
+  /// column receives a share proportional to its squared norm (Broyden, Math. Comp. 19, 1965, p. 577, with
+  /// each unknown scaled by its column's norm).
   [[nodiscard]] Eigen::MatrixXd by_column(const Eigen::VectorXd& missed, const Eigen::VectorXd& step) const;
   /// Returns whether the previous sensitivities predicted the residuals at the last point well enough. If so,
   /// they are updated and assigned to the last point.
@@ -57,8 +57,8 @@ class EventCost : public ceres::CostFunction {
     std::shared_ptr<const playin::TrajectoryCache> cache;
   };
   mutable Last last_;
-  /// The point with sensitivities: its residuals and sensitivities `e`, the correction `off` of newly
-  /// computed sensitivities, and the number of reuses.
+  /// The point at which the sensitivities apply: its sensitivities and residuals `e`, the correction `off` of
+  /// newly computed sensitivities, and the number of reuses `gone_on`.
   struct Looked {
     Eigen::VectorXd at;
     noise::RowMatrix e, off;
