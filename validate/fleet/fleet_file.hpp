@@ -8,6 +8,7 @@
 
 namespace swingbank::validate::fleet {
 
+/// One plant of a fleet, with its records and options.
 struct FleetPlant {
   std::string name;                  ///< letters, digits, - and _; also the name of its folder
   std::filesystem::path model;       ///< plant file
@@ -15,12 +16,13 @@ struct FleetPlant {
   double prior_sd = thresholds::parameters.prior_sd;  ///< as DiagnoseOptions::prior_sd
   bool power_only = false;                            ///< ignore recorded speed, Efd and Ifd
 };
+/// Contents of a fleet file.
 struct Fleet {
-  std::filesystem::path file, folder;
-  std::vector<FleetPlant> plants;  ///< in order of their names
+  std::filesystem::path file, folder;  ///< the file, and its folder
+  std::vector<FleetPlant> plants;      ///< in order of their names
 };
 /// Reads a fleet file (configs/fleet/README.md). Throws InputError with every error of the file. A missing
-/// model or record is reported with its plant later, so that it does not stop the others.
+/// model or record is no error here: the diagnosis of its plant reports it, and the other plants continue.
 Fleet load_fleet(const std::filesystem::path& file);
 /// Returns the JSON Schema of fleet files.
 std::string fleet_schema();

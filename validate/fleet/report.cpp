@@ -45,13 +45,14 @@ std::string chance_text(double chance) {
 }
 std::string number_text(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : ""; }
 
-/// Kind of results: name on the page, colour, and id of its first row.
+/// Kind of result: id of its first row on the page, name and colour.
 struct Kind {
   const char *id, *name;
   report::Tone tone;
-  double shade;  ///< of the verdict's cell
+  double shade;  ///< shade of the verdict's cell, 0 to 1
 };
-/// Kinds in the order of the rows. A failed plant needs work, but nothing shows that its model is wrong.
+/// Kinds in the order of the rows. Failed plants come late, because nothing shows that their models are
+/// wrong.
 constexpr std::array<Kind, 5> kKinds = {{{"unexplained", "unexplained", report::Tone::bad, 1.0},
                                          {"missing", "with a missing effect", report::Tone::warn, 0.7},
                                          {"refit", "adequate after refit", report::Tone::warn, 0.3},
@@ -100,7 +101,7 @@ std::vector<report::Cell> row_cells(const FleetRow& r) {
 /// Sort key in descending order of `v`; NaN comes last.
 double descending(double v) { return std::isnan(v) ? 1 : -v; }
 
-/// Path of a plant's report from the folder of the table; empty: none.
+/// Returns the path of a plant's report, relative to the folder of the table; empty: none.
 std::string report_of(const FleetRow& r) { return r.failed() ? "" : r.plant + "/report.html"; }
 
 constexpr const char* kCaption =

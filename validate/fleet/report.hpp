@@ -15,22 +15,25 @@ namespace swingbank::validate::fleet {
 /// fit for purpose as submitted, failed, adequate), then by the largest error of the submitted model [% of
 /// MVA], the normalised RMS of the refitted one, and the name.
 void sort_worst_first(std::vector<FleetRow>& rows);
-/// Table: plant, verdict, missing effect, side, largest error of the submitted model, fitness for purpose,
-/// errors [multiples of the noise], chance.
+/// Returns the table: plant, verdict, missing effect, side, largest error of the submitted model and its
+/// place, fitness for purpose, normalised RMS (refitted and held out), and bound of the probability under
+/// noise.
 report::Table fleet_table(const std::vector<FleetRow>& rows);
-/// "3 plants: 0 unexplained, 1 with a missing effect, 0 adequate after refit, 1 failed, 1 adequate."
+/// Returns for example "3 plants: 0 unexplained, 1 with a missing effect, 0 adequate after refit, 1 failed, 1
+/// adequate."
 std::string fleet_summary(const std::vector<FleetRow>& rows);
-/// Caution about false verdicts.
+/// Returns the caution about false verdicts.
 std::string fleet_caution(const std::vector<FleetRow>& rows);
 
 std::string fleet_text(const std::vector<FleetRow>& rows);
 std::string fleet_json(const Fleet& fleet, const std::vector<FleetRow>& rows);
-/// CSV with a heading, units in brackets (validate/fleet/README.md describes the columns).
+/// Returns the CSV file. Its headings contain the units in brackets (validate/fleet/README.md lists the
+/// columns).
 std::string fleet_csv(const std::vector<FleetRow>& rows);
-/// Page with links to every plant's report.html, relative to its folder.
+/// Returns the page. Its links to every plant's report.html are relative to the folder of the page.
 std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows);
 
-/// Exit code: 0 all adequate, 3 some plant is not, 1 some plant failed.
+/// Returns the exit code: 1 if any plant failed, otherwise 3 if any plant is not adequate, otherwise 0.
 int fleet_code(const std::vector<FleetRow>& rows);
 
 }  // namespace swingbank::validate::fleet

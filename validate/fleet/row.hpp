@@ -13,7 +13,7 @@ inline constexpr const char* kPlantFormat = "swingbank-fleet-plant-4";
 /// Largest error of P and Q of the submitted model, and its verdict on fitness for purpose.
 struct SubmittedError {
   double percent = 0;                  ///< absolute value [% of the machine's MVA]; NaN: not judged
-  std::string channel, window, event;  ///< where it is; empty: not judged
+  std::string channel, window, event;  ///< where the error occurs; empty: not judged
   std::string fit = "not judged";      ///< fit for purpose: "yes", "no" or "not judged"
 };
 
@@ -36,10 +36,10 @@ struct FleetRow {
   [[nodiscard]] bool failed() const { return verdict == "failed"; }
   [[nodiscard]] bool adequate() const { return verdict == "adequate"; }
 };
-/// Row of a plant that could not be diagnosed, with the reason `why`.
+/// Returns the row of a plant that could not be diagnosed, with the reason `why`.
 FleetRow failed_row(const std::string& plant, const std::string& why);
 nlohmann::json row_json(const FleetRow& row);
-/// Reads a row. Throws InputError, naming `where`, if the text is not one.
+/// Reads a row. Throws InputError, naming the file `where`, if the text is not a row.
 FleetRow read_row(const std::string& text, const std::string& where);
 
 }  // namespace swingbank::validate::fleet

@@ -26,7 +26,7 @@ using nlohmann::json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns the sorted files of a name or glob; "RUN.h5#TERMINAL" keeps its terminal.
+/// Returns the sorted files of a name or glob. The terminal of "RUN.h5#TERMINAL" is appended to each file.
 std::vector<std::string> matching(const std::string& text, const fs::path& folder, Problems& problems) {
   const std::string whole = (folder / text).string();
   if (whole.find_first_of("*?[") == std::string::npos || fs::exists(whole)) return {whole};
@@ -45,7 +45,7 @@ std::vector<std::string> matching(const std::string& text, const fs::path& folde
   return files;
 }
 
-/// Plant with its model and records.
+/// Model and records of one plant.
 struct Loaded {
   plant::PlantModel model;
   std::vector<std::string> files;
@@ -192,7 +192,7 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
       fs::remove_all(temporary);
       write_file(temporary / "plant.json", plant_json(row));
       put_in_place(temporary, folder);
-    } catch (const std::exception&) {  // the row is printed in any case
+    } catch (const std::exception&) {  // without effect on the row, which is returned in any case
     }
     return FleetOutcome{row, false};
   };
