@@ -3,7 +3,7 @@
 
 namespace swingbank::validate::noise {
 
-/// Samples this close to a switching are left out on either side [s].
+/// Samples closer than this to a switching, before or after it, are not used to estimate noise [s].
 constexpr double kBeside = 0.1;
 
 }  // namespace swingbank::validate::noise

@@ -1,5 +1,5 @@
 #pragma once
-// Whitening of coloured noise: noise of the played-in voltage is low-pass filtered by regulator and rotor. A
+// Whitening of coloured noise, such as voltage noise after low-pass filtering by regulator and rotor. A
 // Kalman filter predicts each sample of the residual from the earlier ones; the prediction errors
 // (innovations) are white (Kalman, J. Basic Eng. 82, 1960; correlated disturbances as in Anderson and Moore,
 // Optimal Filtering, 1979, section 5.4).
@@ -16,7 +16,7 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// times `added_covariance` (empty: nowhere).
 struct SlowNoise {
   Eigen::MatrixXd A, C, Q, S, M, P, added_covariance = {};
-  ///< system matrices and covariances; the last: of w, added after doubtful samples
+  ///< system matrices and covariances, see above
   std::vector<char> doubtful = {};  ///< [sample]: multiple of `added_covariance`
 };
 

@@ -16,7 +16,8 @@ constexpr double kMedianOfSquare = 0.4549;
 /// Variance of x[k-1] - 2 x[k] + x[k+1], relative to that of white x.
 constexpr double kSecondDifference = 6;
 /// The standard deviation of log(mean square second difference / variance) of n white samples is
-/// sqrt(kOfRatio / n). It combines the variance's 2 and the differences' 3.89, less twice the covariance's 2.
+/// sqrt(kOfRatio / n). n times the variance of the logarithm is 2 for the variance, 3.89 for the second
+/// differences, and minus 2 * 2 for their covariance.
 constexpr double kOfRatio = 2 * 0.944;
 
 /// Residual statistics of a channel over all events.
@@ -24,7 +25,7 @@ struct Channel {
   std::vector<double> square;  ///< squared second differences of the whole records
   double quiet = 0,
          quiet_hf = 0;  ///< before the events: sums of squared deviations and of squared second differences
-  int samples = 0, differences = 0;  ///< number of samples and of second differences
+  int samples = 0, differences = 0;  ///< degrees of freedom of `quiet`; number of differences in `quiet_hf`
 };
 
 void add(const event::FitEvent& e, const EventFit& f, std::size_t c, Channel& channel) {
@@ -50,7 +51,8 @@ void add(const event::FitEvent& e, const EventFit& f, std::size_t c, Channel& ch
   }
 }
 
-/// Returns the variance of the noise relative to the pre-event segment; 1 if that segment is not white.
+/// Returns the variance of the noise relative to that of the pre-event segment; 1 if that segment is not
+/// white.
 double ratio(Channel channel) {
   const double variance = channel.quiet / channel.samples, hf = channel.quiet_hf / channel.differences;
   const double off = std::log(hf / (kSecondDifference * variance));

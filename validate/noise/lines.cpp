@@ -12,12 +12,12 @@ namespace swingbank::validate::noise {
 namespace {
 
 constexpr double kHighestLine = 5.0;  ///< [Hz]; faster oscillations of a plant are damped quickly
-constexpr double kOfNyquist = 0.8;    ///< above this share of the Nyquist frequency an instrument filters
+constexpr double kOfNyquist = 0.8;    ///< share of the Nyquist frequency above which instruments filter
 constexpr int kMinPeriods = 2;        ///< minimum number of periods in the longest record
 constexpr int kPerResolved = 2;       ///< number of examined frequencies per resolvable one
 
-/// Returns the reduction of chi2 of a whitened residual by a sine of this frequency; 2 on average for white
-/// noise.
+/// Returns the reduction of chi2 if a sine of this frequency is subtracted from a whitened residual; 2 on
+/// average for white noise.
 double taken_off(const std::vector<double>& residual, double turns_per_sample) {
   const Complex turn = std::polar(1.0, constants::turn * turns_per_sample);
   Complex sum = 0, phasor = 1;

@@ -18,8 +18,8 @@ WhitenedEvents whitened_events(const plant::PlantModel& model, std::vector<recor
 /// Returns prepared events with their noise, as whitened_events().
 WhitenedEvents with_noise(const plant::PlantModel& model, std::vector<event::FitEvent> events);
 
-/// Estimates the noise again with another model of the plant; the noise is white. An error of a fifth in a
-/// reactance causes an error of a fifth in the noise.
+/// Estimates the noise again with another model of the plant, as white noise. An error of 20 % in a reactance
+/// causes an error of 20 % in the noise.
 NoiseModel measure_noise(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events);
 
 /// Noise floor of the speed [pu]: effect of an error of 1e-4 pu of P that lasts 0.1 s on a machine of H = 1

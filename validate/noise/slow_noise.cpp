@@ -6,12 +6,12 @@
 namespace swingbank::validate::noise {
 namespace {
 
-constexpr double kGuess = 2e-3;  ///< standard deviation of V near a switching, relative
-/// The square of kGuess is larger by this factor for reconstructed samples of V.
+constexpr double kGuess = 2e-3;  ///< relative standard deviation of V near a switching
+/// Ratio of the variance of a reconstructed sample of V to that of a sample near a switching.
 constexpr char kFiltered = 40;
 /// Lower limit of the share of a channel's own noise in its variance.
 constexpr double kLeastOwnNoise = 0.01;
-/// Slow noise matters from this variance, relative to that of the white noise.
+/// Slow noise is negligible up to this variance, relative to that of the white noise.
 constexpr double kMatters = 1e-3;
 
 /// Returns whether the slow noise of any channel has a relevant variance by the end of the record.
@@ -56,7 +56,7 @@ SlowNoise slow_noise(const playin::LinearPlant& plant, WhitenedEvent whitened, c
   s.P.bottomRightCorner(2, 2) = V / e.start.samples;
   s.Q.topLeftCorner(n, n) = in * V * in.transpose();
   s.Q(m - 1, m - 1) = variance[2];
-  // Near a switching, the voltage between samples is interpolated.
+  // Between the samples next to a switching, the voltage is interpolated with an error of kGuess.
   s.added_covariance = Eigen::MatrixXd::Zero(m, m);
   s.added_covariance.topLeftCorner(n, n) = kGuess * kGuess * in * in.transpose();
   s.doubtful.assign(e.record.t.size(), 0);
@@ -68,8 +68,8 @@ SlowNoise slow_noise(const playin::LinearPlant& plant, WhitenedEvent whitened, c
   }
   s.M = Eigen::MatrixXd::Zero(m, count);
   s.M.topRows(n) = in * V * through.transpose();
-  // The measured noise contains the immediate effect of the voltage's noise. The remainder, a difference of
-  // two large variances, is inaccurate; the channels' own noise is its lower limit.
+  // The measured noise contains the immediate effect of the voltage noise. The remainder is an inaccurate
+  // difference of two large variances, so the channels' own noise is its lower limit.
   const Eigen::MatrixXd scale = noise.deviation.asDiagonal(),
                         unit = noise.deviation.cwiseInverse().asDiagonal();
   const Eigen::MatrixXd white = unit * noise.whitening.inverse();

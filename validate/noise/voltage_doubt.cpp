@@ -16,7 +16,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(covariance);
   return of.eigenvectors().rightCols(3) * of.eigenvalues().tail(3).cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
-/// Returns the random walk's variance per sample of an angle that was integrated from f [rad^2].
+/// Returns the variance per sample of the random walk of an angle that was integrated from f [rad^2].
 double astray(const record::Record& r, std::size_t n) {
   return white_variance(std::span(r.f).first(n)) * std::pow(constants::turn * r.base.frequency * r.step(), 2);
 }
@@ -38,7 +38,7 @@ VoltageDoubt::Shape impulse_response(const SlowNoise& noise, std::size_t samples
 
 VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, WhitenedEvent whitened) {
   const event::FitEvent& e = whitened.event;
-  constexpr std::uint32_t kDraws = 48;  // gives a variance to 20 %
+  constexpr std::uint32_t kDraws = 48;  // enough for a standard error of 20 % of a variance
   const std::size_t samples = e.record.t.size();
   const auto quiet = static_cast<std::size_t>(e.start.samples);
   const bool integrated = e.record.angle == record::AngleSource::integrated;

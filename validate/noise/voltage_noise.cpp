@@ -87,8 +87,8 @@ struct Moving {
 };
 Moving moving_in_band(const WhitenedEvents& events) {
   constexpr double kBeyond = 3.0;  // standard deviations
-  // Shorter segments contain too few bins to estimate the noise level. The pre-event segment may be one of
-  // these, so the estimate is repeated kLevels times.
+  // Shorter segments contain too few bins to estimate the noise level. The pre-event segment may be shorter,
+  // so the estimate is repeated kLevels times.
   constexpr double kStretch = 1.0;  // [s]
   constexpr int kLevels = 3;
   Band before;
@@ -120,9 +120,9 @@ Moving moving_in_band(const WhitenedEvents& events) {
 
 /// Sums of the least-squares regression of the pre-event residual, in units of each channel's noise.
 struct Sums {
-  /// Normal matrix of the response and of the fluctuation carried by P and Q.
+  /// Normal matrix of the simulated response and of the voltage fluctuation contained in P and Q.
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d right = Eigen::Vector2d::Zero();  ///< products of these with the residual
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();  ///< scalar products of both with the residual
   double left = 0, freedom = 0;
   void add(const Sums& other) {
     normal += other.normal;

@@ -13,7 +13,7 @@ struct VoltageNoise {
   /// Variances of V (relative), of theta [rad^2], and of the random walk of an integrated theta [rad^2 per
   /// sample].
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
-  /// Share of this noise that the measured P and Q also carry. 1: the instrument computes P and Q from the
+  /// Share of this noise that the measured P and Q also contain. 1: the instrument computes P and Q from the
   /// recorded phasors; 0: each channel has independent noise.
   double carried = 0;
   /// Share of the pre-event fluctuation of V and theta that is instrument noise. 1: the measured P and Q do
@@ -30,8 +30,9 @@ struct VoltageNoise {
   [[nodiscard]] Eigen::Vector3d of(const event::FitEvent& event) const;
 };
 
-/// Estimates the voltage's noise from its fluctuation between 3 and 10 Hz, before the events and in later
-/// segments that fluctuate no more. Below this band the grid itself moves; above it instruments filter.
+/// Estimates the noise of the voltage from its fluctuation between 3 and 10 Hz. It uses the segments before
+/// the events and later segments with no more fluctuation. Below this band the grid voltage itself varies;
+/// above it, instruments filter.
 VoltageNoise voltage_noise(const std::vector<EventFit>& fits, const WhitenedEvents& events);
 
 }  // namespace swingbank::validate::noise
