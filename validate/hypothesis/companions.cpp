@@ -13,7 +13,8 @@ using Eigen::Index;
 /// Size of a change for its Jacobian column, relative to the effect's start value.
 constexpr double kChangeShare = 0.05;
 
-/// An effect and its columns: one for the whole effect, and one for each of its parameters.
+/// An effect and its columns: one for the whole effect and, if it has several parameters, one for each of
+/// them.
 struct Companion {
   std::string name;
   std::vector<Index> columns;

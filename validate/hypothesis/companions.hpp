@@ -8,8 +8,8 @@
 
 namespace swingbank::validate::hypothesis {
 
-/// Finds the companion of each control on the leader's side. With the companion, the control must have a
-/// lower chi2 than the best single hypothesis by thresholds::evidence.second. `leader` must have a fit.
+/// Finds the companion of each control on the leader's side. With the companion, the control's cost must be
+/// below that of the best control alone by more than thresholds::evidence.second. `leader` must have a fit.
 /// Throws InputError if the leader's plant cannot be simulated.
 void find_companions(const BaseModel& base_model, const Polish& polish, const Identified& leader,
                      std::vector<Identified>& tried);

@@ -26,8 +26,8 @@ constexpr double kFieldNoise = 1e-3, kSpeedNoise = 2e-5;
 constexpr std::size_t kCompetitors = 6;
 constexpr double kFrequencyDip = 0.2;        ///< frequency drop after a remote load step [Hz]
 constexpr double kFrequencyDipWithin = 1.0;  ///< duration of the frequency drop [s]
-constexpr double kReferenceStep = 0.02;      ///< of Vref [pu]
-constexpr double kSceneBegins = 1.0;         ///< of both, after the start of the record [s]
+constexpr double kReferenceStep = 0.02;      ///< step of Vref [pu]
+constexpr double kSceneBegins = 1.0;  ///< time of load step and Vref step after the start of the record [s]
 /// Nodes and weights of Gauss-Hermite quadrature over the noise of a further record, a standard normal
 /// variable.
 constexpr std::array<std::pair<double, double>, 3> kNodes = {
@@ -188,8 +188,8 @@ double effects_in_set(const std::vector<Explanation>& all) {
   return static_cast<double>(std::count_if(all.begin(), end, [](const auto& e) { return e.place >= 0; }));
 }
 
-/// Returns the expected number of effects in the set after this record; empty if a hypothesis cannot be
-/// simulated.
+/// Returns the expected number of effects in the credible set after this record; empty if a hypothesis cannot
+/// be simulated.
 std::optional<double> expected_size(const Separations& between, std::size_t scene,
                                     const std::vector<Output>& outputs, const std::vector<Explanation>& set) {
   double sum = 0, weight = 0;

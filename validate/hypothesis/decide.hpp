@@ -1,6 +1,6 @@
 #pragma once
 // Recommendation of the next measurement: the record that best separates the remaining hypotheses, and the
-// expected size of the set after it.
+// expected size of the credible set after it.
 #include <string>
 #include <vector>
 
@@ -9,22 +9,24 @@
 
 namespace swingbank::validate::hypothesis {
 
-/// A possible record, and the expected number of effects in the set after it.
+/// A possible record, and the expected number of effects in the credible set after it.
 struct NextRecord {
   std::string what;     ///< "field current in an event like ev1"
   double expected = 0;  ///< expected number of effects in the set
 };
-/// Possible measurements and the present size of the set.
+/// Possible measurements and the present size of the credible set.
 struct Decision {
   double now = 0;                ///< number of effects in the set
   std::vector<NextRecord> next;  ///< in ascending order of the expected number; empty: nothing to separate
 };
 
-/// Simulates the competing hypotheses of the set in possible records: events like the recorded ones (the best
-/// one is kept), a remote load step, and a step of the voltage reference. Channels are those of these
-/// records, or these with speed, field voltage or field current. The response of one hypothesis serves as the
-/// record. Each other hypothesis is refitted to it (linearised about its fit, with the records' information
-/// on its parameters); the remaining chi2 is the fall of its evidence. Only for records of whole plants.
+/// Returns the measurements that may separate the hypotheses of the credible set. The possible records are
+/// events like the recorded ones (only the best is returned), a remote load step, and a step of the voltage
+/// reference. Their channels are the recorded ones, alone or with speed, field voltage or field current.
+///
+/// The response of one hypothesis serves as the record. Each other hypothesis is refitted to it, linearised
+/// about its fit, with the information of the present records on its parameters. The remaining chi2 reduces
+/// its evidence. Returns no measurement for component records and staged tests.
 Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vector<Explanation>& all,
                            const noise::WhitenedEvents& events, double prior_sd, int threads);
 

@@ -19,10 +19,10 @@ namespace {
 
 using sim::Slot;
 
-constexpr std::uint64_t kGroupDraws = 32;  ///< number of draws of the parameters that a group frees
+constexpr std::uint64_t kGroupDraws = 32;  ///< number of draws of the parameters of a freed group
 /// Prior standard deviation of ln(value) of parameters at their null values.
 constexpr double kGroupPriorSd = 2.0;
-/// Prior standard deviation of an added effect's parameters: a factor e.
+/// Prior standard deviation of ln(value) of an added effect's parameters: a factor e.
 constexpr double kAddedPriorSd = 1.0;
 /// Prior standard deviation of factors near 1, such as a transformer's tap ratio.
 constexpr double kFactorPriorSd = 0.1;
@@ -98,7 +98,7 @@ std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, in
   return free;
 }
 
-/// Frees these parameters of one block.
+/// Frees these parameters of one block, with the plant's values as start values.
 void free_about_values(Hypothesis& h, std::vector<fit::FreeParameter> free) {
   h.free = std::move(free);
   h.starts = {fit::values_of(h.plant, h.free)};
@@ -148,8 +148,9 @@ std::string_view stem(std::string_view name) {
 
 /// Start values of a group, relative to the range of its parameters.
 constexpr std::array kCurveStarts = {0.02, 0.1, 0.3, -0.02, -0.1};
-/// Start values of a dead band's edges, relative to their range of 1 pu. A voltage's dead band is a few
-/// hundredths of 1 pu, a frequency's a thousandth. A dead band wider than the signal has zero gradient.
+/// Start values of a dead band's edges, relative to their range of 1 pu. A dead band is a few hundredths of 1
+/// pu for voltage, and a thousandth for frequency. If it is wider than the signal, the gradient of the cost
+/// is zero.
 constexpr std::array kBandStarts = {3e-4, 1e-3, 4e-3, 0.015, 0.05};
 
 /// Returns whether a group consists of the two edges of a dead band about a null value of 0.
@@ -255,7 +256,7 @@ void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypot
 }
 
 /// Returns whether a parameter may be 0 in `without` but not in `with`, such as the time constant of a rate
-/// feedback. It then acts only with the group that is at its null value.
+/// feedback. It then acts only while the group differs from its null values.
 bool acts_only_beside(const sim::plant::Plant& without, const sim::plant::Plant& with,
                       sim::plant::ParameterId id) {
   const auto may_be_zero = [&](const sim::plant::Plant& plant) {
@@ -266,7 +267,8 @@ bool acts_only_beside(const sim::plant::Plant& without, const sim::plant::Plant&
   return may_be_zero(without) && !may_be_zero(with);
 }
 
-/// Returns values of the free parameters of `h`: those of `fitted`, and draws of the parameters `freed`.
+/// Returns sets of values of the free parameters of `h`: random draws of the parameters `freed`, and the
+/// values of `fitted` for all others.
 std::vector<std::vector<double>> draws_of(const Hypothesis& h, const std::vector<fit::FreeParameter>& freed,
                                           const sim::plant::Plant& fitted) {
   sim::plant::Plant plant = h.plant;

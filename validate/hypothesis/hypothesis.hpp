@@ -1,7 +1,8 @@
 #pragma once
 // Hypotheses on missing effects: every effect of a library in a free slot, every group of parameters at their
-// null values, every measurement fault, every convention. Replacements: every other control in the slot of a
-// control that does not share it. No effect is listed by name; a new effect is included automatically.
+// null values, every measurement fault, every convention. In addition, a control that does not share its slot
+// may be replaced by every other effect of this slot. The code lists no effect by name, so a new effect is
+// included automatically.
 #include <string>
 #include <vector>
 
@@ -21,40 +22,40 @@ struct Hypothesis {
   std::string what;              ///< "exciter SEXS (simplified excitation system)"
   std::string with = {};         ///< name of the effect added before; empty: none
   Side side = Side::none;        ///< side of the plant that it changes
-  bool replaces = false;         ///< it replaces the control in its slot
+  bool replaces = false;         ///< whether it replaces the control in its slot
   int slot = -1;                 ///< slot that the effect fills (sim::Slot); -1: none
   sim::plant::Plant plant;       ///< the base model with the hypothesis added, at its first start values
   sim::Conventions conventions;  ///< conventions with the hypothesis
   std::vector<fit::FreeParameter> free;     ///< parameters of the hypothesis
   std::vector<std::vector<double>> starts;  ///< start values of `free`
-  bool added = false;                       ///< an effect other than an instrument is added
-  /// Further values of `free`; each is optimised if the effect is identified alone.
+  bool added = false;                       ///< whether it adds an effect other than an instrument
+  /// Further start values of `free`, for the identification only.
   std::vector<std::vector<double>> further = {};
   /// Returns references to plant and conventions; the hypothesis must outlive them.
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
 };
 
-/// Contents of a plant's records that decide which hypotheses they can show.
+/// Properties of the records that determine which hypotheses can be tested.
 struct RecordContents {
   record::Component component = record::Component::plant;  ///< recorded part of the plant
-  bool integrated_angle = false;                           ///< an angle was integrated from a frequency
+  bool integrated_angle = false;  ///< whether any angle was integrated from a frequency
 };
 
 /// Returns every hypothesis that the library allows for the plant; the hypotheses refer to the library's
-/// effects. Effects whose output nothing reads (a stabiliser without an exciter) and effects that act at
-/// given times, which are specific to one event, are left out. For a component, only effects of this
-/// component are returned.
+/// effects. Excludes effects whose output no block reads (a stabiliser without an exciter), and effects that
+/// act at given times, because these are specific to one event. For the record of a component, only effects
+/// of this component are returned.
 std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
                                        const sim::library::EffectLibrary& library,
                                        const RecordContents& recorded = {});
 /// Returns a hypothesis for every control that does not share its slot and every other effect of that slot.
 std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
                                          const sim::library::EffectLibrary& library);
-/// Returns hypotheses with one more group of parameters free that are at null values by default, such as a
-/// rate feedback KF = 0. There is one for each group ("EXST1 with KF") and, if the group may have either
-/// sign, one for each sign. A parameter that acts only with the group (TF) has the same wide prior as the
-/// group. `fitted` is the plant of a fit of `h`: further starts have its values, and random draws of the
-/// freed parameters. Empty if `h` adds no such effect.
+/// Returns extensions of `h` that also free one group of the added effect's parameters that are at null
+/// values by default, such as a rate feedback KF = 0. There is one extension for each group ("EXST1 with KF")
+/// and, if the group may have either sign, one for each sign. A parameter that acts only with the group (TF)
+/// has the same wide prior as the group. `fitted` is the plant of a fit of `h`: further start values are its
+/// values with random draws of the freed parameters. Empty if `h` adds no effect with such a group.
 std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Plant& fitted);
 /// Returns the name with that of the effect added before: "SEXS + GENROU:Ra".
 std::string full_name(const Hypothesis& h);

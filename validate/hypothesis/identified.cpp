@@ -105,7 +105,8 @@ class Identifying {
         [&](int done) { report_progress(event::Phase::missing_input, "", done, kInputs.size()); },
         base_model_.threads);
     if (found[2]->criterion < std::min(found[0]->criterion, found[1]->criterion)) return reduce(*found[2]);
-    // The better input alone; also the other one if its reduction of chi2 is similar.
+    // The better input; also the other one, if its reduction of chi2 is less by at most evidence.within_reach
+    // or exceeds the share search.fair of the better one's.
     const auto takes_off = [&](std::size_t i) { return fit::penalised(base_model_.fit) - found[i]->chi2; };
     for (const std::size_t i : {0, 1})
       if (found[i]->criterion < found[1 - i]->criterion ||
@@ -122,7 +123,7 @@ class Identifying {
   [[nodiscard]] const Reduced& side_of(const Identified& h) const {
     return h.input() == InputKind::torque ? torque_ : field_;
   }
-  /// Returns whether an effect is missing on the other side as well.
+  /// Returns whether the records need both inputs, so that an effect is missing on each side.
   static bool other_is_free(const Reduced& side) {
     return side->inference().inputs.torque && side->inference().inputs.field;
   }
@@ -163,8 +164,8 @@ class Identifying {
     const auto best = std::ranges::min_element(tried_, {}, &Identified::cost);
     return best == tried_.end() || !std::isfinite(best->cost) ? nullptr : &*best;
   }
-  /// Returns whether the best hypothesis may reach half of the required evidence. The reduced plant predicts
-  /// it to a few units of chi2.
+  /// Returns whether the best hypothesis is predicted to reach half of the required evidence. The prediction
+  /// of the reduced plant is accurate to a few units of chi2.
   [[nodiscard]] bool worth_a_fit() {
     const Identified* best = least();
     return best &&
@@ -207,11 +208,11 @@ class Identifying {
     if (!leader || !base_model_.with.empty() || base_model_.stopped() || others_ < leader->cost) return;
     try {
       hypothesis::find_companions(base_model_, polish_, *leader, tried_);
-    } catch (const InputError&) {  // runs with sensitivities take other steps, and these fail for this plant
+    } catch (const InputError&) {  // integration with sensitivities takes other steps and may fail
     }
   }
-  /// Fits the hypotheses that may come within reach of the best. A linearisation about another block does not
-  /// predict the cost of a block with many parameters, unless that block does not fit at all.
+  /// Fits the hypotheses that may come within reach of the best. A linearisation about another block predicts
+  /// the cost of a block with many parameters poorly, so all blocks that nearly fit are fitted too.
   void fit_in_reach() {
     const Identified* leader = least();
     if (!leader) return;
@@ -223,8 +224,9 @@ class Identifying {
     }
     fit(some);
   }
-  /// Fits the hypotheses whose fits are not complete. The lowest cost of the other hypotheses (`others_`)
-  /// limits only fits of blocks that the identification also places behind it. A fit may be slow at first.
+  /// Fits the hypotheses whose fits are not complete. The goal of a block depends on `others_` only if the
+  /// block's identified cost is higher than `others_`: a fit may converge slowly at first and must not end
+  /// too early.
   void fit(std::vector<Identified*> some) {
     std::erase_if(some, [](const Identified* h) { return h->polished; });
     const double least = least_fitted();
@@ -304,7 +306,7 @@ class Identifying {
   std::vector<Identified> tried_;
   Reduced torque_, field_;
   double none_;  ///< cost of the base model
-  /// Lowest cost of a hypothesis that cannot be identified alone.
+  /// Lowest cost of all fits after those of the hypotheses that cannot be identified alone.
   double others_ = std::numeric_limits<double>::infinity();
 };
 

@@ -13,14 +13,14 @@ namespace swingbank::validate::hypothesis {
 /// breaker operation, an open circuit or a staged test.
 bool can_be_identified(const BaseModel& base_model, const Hypothesis& h);
 
-/// Sets the gain of hypotheses that were identified but not fitted: the best gain less their distance in chi2
-/// (Judgement::behind).
+/// Sets the gain of hypotheses that were identified but not fitted: the best gain minus Judgement::behind.
 void place_unfitted(std::vector<Judgement>& all);
 
-/// Returns every hypothesis in descending order of evidence. Those that could still become probable besides
-/// the best one are fitted; those without any response are left out. `fit_others` fits the hypotheses that
-/// cannot be identified alone. It is called once with the lowest cost of a whole plant so far and returns the
-/// lowest cost of its fits. Hypotheses far behind these are not fitted here.
+/// Returns every hypothesis in descending order of evidence, without those that have no influence on the
+/// response. Hypotheses that may come within reach of the best one are fitted. `fit_others` fits the
+/// hypotheses that cannot be identified alone. It is called once, with the lowest cost of a whole-plant fit
+/// so far, and returns the lowest cost including its own fits. Hypotheses far above this cost are not fitted
+/// here.
 std::vector<Judgement> identified(const BaseModel& base_model, std::vector<Hypothesis> all,
                                   const std::function<double(double least)>& fit_others,
                                   const event::Progress& report);

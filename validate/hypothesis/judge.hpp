@@ -13,9 +13,9 @@ namespace swingbank::validate::hypothesis {
 /// Hold-out result of one event, from the model fitted to the other events with and without an effect.
 struct HeldOut {
   std::string record;            ///< name of the record
-  double before = 0, after = 0;  ///< reduced chi-square
-  /// Growth of the fit's cost per value when this event joins the fit. It is the event's chi2 less the part
-  /// due to parameters that the other events do not determine.
+  double before = 0, after = 0;  ///< reduced chi-square without and with the effect
+  /// Increase of the fit's cost, per value of this event, when the event joins the fit. It is the event's
+  /// chi2 without the part due to parameters that the other events do not determine.
   double cost_before = 0, cost_after = 0;  ///< cost per value without and with the effect
   int values = 0;                          ///< number of compared values
   /// Returns the effect's reduction of the cost of the whole event; negative if the cost rises.
@@ -25,22 +25,22 @@ struct HeldOut {
 /// A hypothesis with its fit and verdict.
 struct Judgement {
   Hypothesis hypothesis;  ///< judged hypothesis
-  fit::Fit fit;           ///< to all events
-  double gain = 0;  ///< 2 ln(Bayes factor): criterion of the base model less criterion with the hypothesis
-  double size = 0;  ///< square root of the hypothesis's reduction of chi2 [noise standard deviations]
+  fit::Fit fit;           ///< fit to all events
+  double gain = 0;        ///< 2 ln(Bayes factor): criterion of the base model minus that with the hypothesis
+  double size = 0;        ///< square root of the hypothesis's reduction of chi2 [noise standard deviations]
   std::vector<HeldOut> held_out;  ///< empty: not judged
-  bool fitted = true;             ///< false: not promising; `fit` is then the base model's
+  bool fitted = true;             ///< false: not promising, so `fit` is that of the base model
   /// Excess of chi2 over the best hypothesis, for one that was identified but not fitted.
   double behind = 0;
   /// For an identified control: the effect of the machine or of an instrument with which its chi2 is lowest,
   /// and the reduction of chi2 from the best single control. Empty: no reduction is large enough.
   std::string companion = {};
   double companion_gain = 0;  ///< reduction of chi2 by the companion
-  bool accepted = false;      ///< all criteria of acceptance are met
+  bool accepted = false;      ///< whether all criteria of acceptance are met
   std::string why_not;        ///< reason for rejection; empty if accepted
 };
 
-/// Returns the plant parameters that a refit may move, then the hypothesis's own parameters.
+/// Returns the plant parameters that a refit may change, then the hypothesis's own parameters.
 std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double prior_sd);
 
 /// Events of the judgement, and the limits of acceptance.
@@ -53,16 +53,16 @@ struct Trial {
   const noise::NoiseTransfer* noise_transfer = nullptr;
 };
 
-/// Predicts each event with the structure fitted to the other events. Empty `free` means the plant's own
-/// parameters.
+/// Predicts each event with the structure fitted to the other events. Fills HeldOut::after and cost_after.
+/// `whole`: fit to all events. If `free` is empty, the plant's own parameters are free.
 std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTest& tested,
                               const std::vector<fit::FreeParameter>& free, const fit::Fit& whole);
-/// Returns the left-out event that speaks against an effect of this evidence, with the reason; empty if there
-/// is none. `adequate` is Trial::adequate.
+/// Returns the reason why a held-out event contradicts an effect of this evidence; empty if none does.
+/// `adequate` is Trial::adequate.
 std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate);
-/// Completes the fit of `j` and accepts it if three conditions hold: its evidence is strong, no left-out
-/// event objects (objection()), and the residual counts as noise. Otherwise sets `why_not`. Has no effect on
-/// a hypothesis that was not fitted.
+/// Completes the fit of `j` and accepts it if three conditions are met: its evidence is at least
+/// Trial::evidence, no held-out event contradicts it (objection()), and the residual counts as noise.
+/// Otherwise sets `why_not`. Has no effect on a hypothesis that was not fitted.
 void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j);
 
 }  // namespace swingbank::validate::hypothesis

@@ -28,8 +28,8 @@ Judgement staying(const Hypothesis& h, const fit::Fit& in) {
   copy_values(in.plant, h.plant, h.free, stays.fit.plant);
   return stays;
 }
-/// Returns `h` on the base model `then`, not fitted. Start values are those of `from`, and those of `then`
-/// for its own parameters.
+/// Returns `h` on the base model `then`, not fitted. The start values of the effects added before are those
+/// of `then`; all others are those of `from`.
 Judgement begun(const BaseModel& then, Hypothesis h, const fit::Fit& from) {
   Judgement j;
   j.fit.failed = "not fitted";

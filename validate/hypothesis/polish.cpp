@@ -10,11 +10,11 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-/// Maximum number of steps of a fit of the whole plant: to find the leader, and at the end.
+/// Maximum number of steps of a fit of the whole plant: in the choice of the leader, and in the final fit.
 constexpr int kLeaderSteps = 8, kPolishSteps = 40;
-/// Maximum number of linearisations about an optimum, and of the block's steps for each. The rounds end if
-/// less than this reduction of chi2 is predicted.
+/// Maximum number of linearisations about an optimum, and of the block's steps for each.
 constexpr int kLinearRounds = 3, kLinearSteps = 8;
+/// Predicted reduction of chi2 below which the linearisations end.
 constexpr double kSettledCost = 1.0;
 
 }  // namespace
@@ -35,7 +35,7 @@ VectorXd Polish::own_of(const Identified& h, const std::vector<double>& values) 
   return z;
 }
 
-/// Returns the optimum that the reduced plant predicts.
+/// Returns the point of the optimum that the reduced plant predicts.
 Polish::Point Polish::expected(const Identified& h, const reduced::Reduction& reduction,
                                const reduced::Optimum& found) const {
   Point to{reduction.inference().offset + found.plant, own_of(h, found.values),

@@ -18,13 +18,13 @@ struct Identified {
   std::vector<reduced::Optimum> optima = {};  ///< best first
   /// Cost of the best optimum; after a fit of the whole plant, that of the fit.
   double cost = std::numeric_limits<double>::infinity();
-  std::vector<fit::Fit> fits = {};  ///< of the whole plant
-  bool polished = false;            ///< the fits are complete
+  std::vector<fit::Fit> fits = {};  ///< fits of the whole plant
+  bool polished = false;            ///< whether the fits are complete
   std::string companion = {};       ///< see Judgement
   double companion_gain = 0;        ///< see Judgement
   /// Returns the best fit; null if there is none or all failed.
   [[nodiscard]] const fit::Fit* best() const;
-  /// Returns the input that the block drives: torque, or the field voltage.
+  /// Returns the input of the machine on which the block acts: torque or field voltage.
   [[nodiscard]] event::InputKind input() const {
     return hypothesis.side == Side::mechanical ? event::InputKind::torque : event::InputKind::field;
   }
@@ -33,14 +33,14 @@ struct Identified {
 /// Joint fits of the whole plant for identified hypotheses on one base model.
 class Polish {
  public:
-  /// Reduction of the events for one linearisation point.
+  /// Reduced plant at one linearisation point.
   using Reduced = std::shared_ptr<const reduced::Reduction>;
   /// Prepares the fits. `base_model` must outlive this object.
   explicit Polish(const BaseModel& base_model);
 
   /// Free parameters of the base model.
   [[nodiscard]] const std::vector<fit::FreeParameter>& free() const { return free_; }
-  /// Returns the selection of this input alone.
+  /// Returns the selection that contains only this input.
   [[nodiscard]] static reduced::Inputs only(event::InputKind kind) {
     return {.torque = kind == event::InputKind::torque, .field = kind == event::InputKind::field};
   }
@@ -48,16 +48,17 @@ class Polish {
   /// plant cannot be simulated.
   [[nodiscard]] Reduced linear_about(const Identified& h,
                                      std::span<const reduced::Change> changes = {}) const;
-  /// Fits the whole plant for a few steps from the best optimum. The linearisation may be far away.
+  /// Fits the whole plant for a few steps from the best optimum. The linearisation point of `from` may be far
+  /// from it.
   void briefly(Identified& h, const reduced::Reduction& from) const;
-  /// Fits the whole plant from each optimum, if it may come below `goal`. Before the fit, the plant is
-  /// linearised about the optimum and the block is identified again, at most three times. The reduced plant
-  /// moves along narrow valleys in which a fit is slow, such as that of gain and T'do. There is no fit if
-  /// such a linearisation predicts a cost above `goal`.
+  /// Fits the whole plant from each optimum. Before the fit, the plant is linearised about the optimum and
+  /// the block is identified again, at most three times. These steps follow narrow valleys of the cost in
+  /// which a fit is slow, such as that of gain and T'do. There is no fit if such a linearisation predicts a
+  /// cost above `goal`.
   void polish(Identified& h, const reduced::Reduction& from, double goal) const;
 
  private:
-  /// Values of the whole plant and of each event, on their axes.
+  /// Values of the whole plant and of each event's state, on their axes.
   struct Point {
     Eigen::VectorXd plant, own;  ///< parameters of the base model and of the hypothesis
     std::vector<Eigen::VectorXd> states;

@@ -8,29 +8,31 @@ namespace swingbank::validate::hypothesis {
 
 /// Names of the explanations that are not effects.
 inline constexpr const char *kNothingMissing = "nothing missing", *kNoneOfThese = "none of these";
-///< no effect; an unlisted effect
+///< no effect is missing; an unlisted effect is missing
 
 /// An explanation of the records with its posterior probability.
 struct Explanation {
   std::string name;     ///< name of the effect, or kNothingMissing, kNoneOfThese
-  double evidence = 0;  ///< 2 ln(Bayes factor) over the given model, less the threshold for additions [chi2]
-  int place = -1;       ///< index of the effect in the source list; -1: no effect
+  double evidence = 0;  ///< 2 ln(Bayes factor) over the given model, minus the threshold for additions [chi2]
+  int place = -1;       ///< index in the caller's list of hypotheses; -1: no effect
   double probability = 0;  ///< set by posterior()
 };
 
-/// Computes the probabilities and sorts by them, most probable first. `none`: evidence of an unlisted effect
-/// less its threshold, from the free inputs and a steady oscillation. An unlisted effect may also resemble
-/// the best listed one; its evidence is at least that one's less thresholds::evidence.accepted.
+/// Computes the probabilities and returns the explanations, most probable first. `none`: evidence of an
+/// unlisted effect minus its threshold, from the free inputs and a steady oscillation. An unlisted effect may
+/// also resemble the best listed one, so its evidence is at least that of the best minus
+/// thresholds::evidence.accepted.
 std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
 
-/// Returns the number of leading explanations whose probabilities sum to thresholds::posterior.set.
+/// Returns the size of the credible set: the number of leading explanations whose probabilities sum to
+/// thresholds::posterior.set or more.
 std::size_t credible(const std::vector<Explanation>& all);
 
 /// Returns the difference of evidence from a better explanation beyond which an explanation is negligible
 /// (thresholds::posterior.negligible) [chi2].
 double out_of_reach();
-/// Returns the difference of evidence from the best hypothesis up to which a hypothesis may be in the set
-/// [chi2].
+/// Returns the difference of evidence from the best hypothesis up to which a hypothesis may be in the
+/// credible set [chi2].
 double out_of_set();
 
 }  // namespace swingbank::validate::hypothesis

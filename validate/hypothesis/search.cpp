@@ -19,8 +19,8 @@
 namespace swingbank::validate::hypothesis {
 namespace {
 
-/// Maximum number of steps of an identification and of the fit from its optimum, and of the fit that
-/// continues from the best one.
+/// Maximum number of steps. kFirstSteps: of an identification, and of the fit from its optimum. kLastSteps:
+/// of the fit that continues the best of these.
 constexpr int kFirstSteps = 4, kLastSteps = 40;
 /// Effort of an identification in closed loop, whose trials cost far more than those in open loop.
 constexpr reduced::IdentifyOptions kClosedLoop{.draws = 4, .kept = 1, .steps = kFirstSteps};
@@ -41,10 +41,10 @@ struct Candidate {
   std::vector<fit::Fit> fits = {};
 };
 
-/// Fits of hypotheses that cannot be identified in open loop. Each is identified in closed loop, with the
-/// plant's other parameters linear, about the base model's fit and, unless that nearly fits, about the
+/// Fits of hypotheses that cannot be identified in open loop. Each is identified in closed loop. The plant's
+/// other parameters enter linearly, about the base model's fit and, unless that nearly fits, also about the
 /// submitted values. The optima are fitted for a few steps if they promise half of the required evidence. The
-/// best of these fits is completed, if it may come within reach of the best hypothesis.
+/// best of these fits is completed if it may come within reach of the best hypothesis.
 class WholeFits {
  public:
   /// `least`: lowest cost of the hypotheses that are fitted already.
@@ -56,8 +56,8 @@ class WholeFits {
         sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(base_model.fit.plant, f.id);
       try {
         linearise(plant, std::vector<fit::EventState>(base_model.events.size()));
-      } catch (
-          const InputError&) {  // cannot be simulated; the fit, which was simulated, is a point in any case
+      } catch (const InputError&) {  // cannot be simulated; the fit below can, and is a point of its own in
+                                     // any case
       }
     }
     std::vector<fit::EventState> fitted;
@@ -190,7 +190,7 @@ class WholeFits {
 
   const BaseModel& base_model_;
   const event::Progress& report_;
-  std::vector<std::unique_ptr<const reduced::ClosedLoop>> points_;  ///< the base model, linearised
+  std::vector<std::unique_ptr<const reduced::ClosedLoop>> points_;  ///< linearisations of the base model
   double least_;
 };
 

@@ -18,10 +18,10 @@ namespace swingbank::validate::hypothesis {
 /// Base model of a search: a structure to which a hypothesis may be added.
 struct BaseModel {
   const noise::WhitenedEvents& events;         ///< events with their noise model
-  sim::plant::Plant plant;                     ///< with the nominal values, the centres of the priors
+  sim::plant::Plant plant;                     ///< plant at the nominal values, the centres of the priors
   sim::Conventions conventions;                ///< conventions of the model
   const sim::library::EffectLibrary& library;  ///< source of the effects
-  const fit::Fit& fit;                         ///< of this base model
+  const fit::Fit& fit;                         ///< fit of this base model
   /// Parameters of effects added before, with their IDs in `plant`.
   std::vector<fit::FreeParameter> own = {};
   std::string with = {};  ///< name of the effect added before; empty: the given model
@@ -31,8 +31,7 @@ struct BaseModel {
   std::function<bool()> stop = {};
   /// Inferred inputs that are free in time with this base model; null: not yet inferred.
   const reduced::FreeInput *torque = nullptr, *field = nullptr;  ///< inferred inputs
-  /// Called with the state of each hypothesis's fit, interrupted ones included, from any thread. May be
-  /// empty.
+  /// Called with each hypothesis's fit, also after an interruption, from any thread. May be empty.
   std::function<void(const fit::Fit&)> reached = {};
   /// Returns whether the user has asked to stop.
   [[nodiscard]] bool stopped() const { return stop && stop(); }
@@ -72,7 +71,7 @@ sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h);
 /// computed.
 std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& f);
 
-/// Fits a hypothesis that was not promising, from its start values.
+/// Fits a hypothesis that the search has not fitted, from its start values.
 void fit_alone(const BaseModel& base_model, Judgement& j);
 
 /// Fits `h` from the end point of the fit of another structure. Parameters that the other one lacks start at
@@ -86,30 +85,33 @@ void try_from(const BaseModel& base_model, const fit::Fit& other, Judgement& j);
 /// Returns the base model that consists of `base_model` and the hypothesis of `j`.
 BaseModel after(const BaseModel& base_model, const Judgement& j);
 
-/// Frees in `h` the parameters of effects added before, at their fitted values.
+/// Adds the parameters of effects added before to the free parameters of `h`, with their fitted values as
+/// start values.
 void bring(const BaseModel& base_model, Hypothesis& h);
 
-/// Returns the candidates for the place of a pair's first effect, with its second effect kept: all effects of
-/// the first one's slot, and the accepted hypotheses of `alone`. They are not fitted. `fit` holds the start
-/// values and states: those of the candidate as in `alone`, those of the second effect as in the pair.
+/// Returns the candidates for replacing a pair's first effect while its second effect stays: all effects of
+/// the first one's slot, and the accepted hypotheses of `alone`. They are not fitted; `fit` contains only
+/// start values and states. Those of the second effect are from the pair's fit. All others are from the
+/// candidate's fit in `alone` or, without one, from the pair's fit.
 std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& pair,
                                  const std::vector<Judgement>& alone);
-/// Fits a candidate of `exchanges` or `crossed` from its start. Does nothing if the candidate has no start.
+/// Fits a candidate of exchanges() or crossed() from its start. Does nothing if the candidate has no start.
 void try_begun(const BaseModel& base_model, Judgement& j);
-/// Two effects that were found in two pairs, each with a partner of its own.
+/// A new pair: one effect from each of two pairs in which they had other partners.
 struct Cross {
   std::string joins;          ///< name of the effect taken from the better pair
   const Judgement* joins_in;  ///< the better pair, whose machine parameters are used
   std::string stays;          ///< name of the effect taken from the other pair
   const Judgement* stays_in;  ///< the other pair
-  /// Evidence of both pairs less that of their partners' pair; reductions of chi2 are assumed to add up.
+  /// Evidence of both pairs minus that of the pair of their partners; reductions of chi2 are assumed to add
+  /// up.
   double expected;
 };
-/// Returns the cross with the highest expected evidence whose two effects are in no common pair, while their
-/// partners are.
+/// Returns the cross with the highest expected evidence. Its two effects have not been tried as a pair, but
+/// their partners have. Empty if there is none.
 std::optional<Cross> best_cross(std::span<const Judgement> pairs);
-/// Returns the pair of a cross, not fitted. If one effect requires another to be present, only the names are
-/// set.
+/// Returns the pair of a cross, not fitted. If one of its effects cannot be added without another, only the
+/// names are set.
 Judgement crossed(const BaseModel& base_model, const Cross& cross);
 
 }  // namespace swingbank::validate::hypothesis
