@@ -56,8 +56,8 @@ class WholeFits {
         sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(base_model.fit.plant, f.id);
       try {
         linearise(plant, std::vector<fit::EventState>(base_model.events.size()));
-      } catch (const InputError&) {  // cannot be simulated; the fit below can, and is a point of its own in
-                                     // any case
+      } catch (
+          const InputError&) {  // the submitted values cannot be simulated; only the fit remains as a point
       }
     }
     std::vector<fit::EventState> fitted;
