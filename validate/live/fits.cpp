@@ -71,7 +71,8 @@ std::string side_of(const diagnose::Diagnosis& d) {
   return d.field.evidence > d.torque.evidence ? "excitation" : "mechanical";
 }
 
-/// Returns the candidates with their probabilities: of the verdict, or of the evidence so far.
+/// Returns the candidates with their probabilities: those of the verdict or, before it, from the evidence so
+/// far.
 json candidates_json(const diagnose::Diagnosis& d) {
   std::vector<hypothesis::Explanation> all = d.probabilities;
   if (all.empty() && !d.ranked.empty()) {
@@ -135,7 +136,7 @@ calibrate::CalibrateOptions fitting(const Setup& setup, const json& request, con
   return o;
 }
 
-/// Returns the values rounded to the width of a line [pu].
+/// Returns the values [pu], rounded to 1e-5, less than the width of a line on the page.
 json curve_json(const std::vector<double>& curve) {
   json values = json::array();
   for (const double v : curve) values.push_back(number(std::round(1e5 * v) / 1e5));

@@ -10,21 +10,24 @@ namespace swingbank::validate::live {
 /// Receives the messages of a fit, from any thread. Member "type":
 /// - "progress": phase (event::Phase), item, done, total
 /// - "preliminary": sentence, candidates with probability so far, inferred inputs of each event
-/// - "reached": chi2, reduced chi-square of a fit that is better than those before; events, its curves [pu]
+/// - "reached": a fit that is better than those before: its reduced chi-square (chi2) and its curves [pu]
+/// (events)
 /// - "diagnosis": the result of a diagnosis
+/// - "end": the end of a diagnosis
 /// - "step": a new model, for step_of_fit()
 /// - "failed": text
 using Emit = std::function<void(const nlohmann::json& message)>;
 
-/// Runs a fit: {"kind": "diagnose", "add" or "calibrate", "plant": plant_json(), "effect", "held_out"}. A
-/// stop signal ends it with the values reached so far.
+/// Runs the fit of a request: {"kind": "diagnose", "add" or "calibrate", "plant": plant_json(), "effect",
+/// "held_out"}. On a stop signal, a diagnosis sends its result so far; any other fit sends "failed".
 void run_fit(const Setup& setup, const nlohmann::json& request, const Emit& emit);
 
 /// Returns effects, values and conventions of a model's plant, exact to the last bit.
 nlohmann::json plant_json(const plant::PlantModel& model);
-/// Returns `model` with another plant of the same case. Throws InputError: unknown effect.
+/// Returns `model` with another plant of the same case. Throws InputError if an effect is unknown.
 plant::PlantModel with_plant(plant::PlantModel model, const nlohmann::json& plant);
-/// Returns the step of a message "step", without its comparison. `parent`: the step that was fitted.
+/// Returns the step of a message "step", without its comparison. `from`: the step that was fitted; `parent`:
+/// its number.
 Step step_of_fit(const Setup& setup, const Step& from, int parent, const nlohmann::json& message);
 
 }  // namespace swingbank::validate::live

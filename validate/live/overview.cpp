@@ -20,10 +20,10 @@ namespace {
 
 using nlohmann::json;
 
-/// Slider range of a positive parameter: a thirtieth to thirty times its value, within the usual range.
+/// Largest ratio of a positive parameter's slider limits to its value, upwards and downwards.
 constexpr double kSliderReach = 30;
 
-/// Returns the sliders of a model: every parameter but codes.
+/// Returns the sliders of a model: one for every parameter that is not a code.
 json sliders(const Setup& setup, const Step& step) {
   json all = json::array();
   const auto& plant = step.model.plant;
@@ -59,7 +59,8 @@ json sliders(const Setup& setup, const Step& step) {
   return all;
 }
 
-/// Returns the windows of a channel's map with their bins; the fraction of MVA where the channel is a power.
+/// Returns the windows of a channel's error map. Each bin contains the normalised RMS, its bound, and the RMS
+/// [unit of the channel]; an empty bin is null.
 json map_of(const compare::EventComparison& e, const compare::ChannelComparison& c) {
   json rows = json::array();
   for (std::size_t w = 0; w < c.map.rows.size(); ++w) {

@@ -15,17 +15,17 @@
 
 namespace swingbank::validate::live {
 
-/// Inputs that all sessions share; not changed after the start.
+/// Inputs that all sessions share. They do not change after the start.
 struct Setup {
   plant::PlantModel model;                         ///< submitted model
   std::vector<record::Record> records;             ///< one for each event
-  std::vector<compare::Measurement> measured;      ///< of `records`, with the options `compare`
+  std::vector<compare::Measurement> measured;      ///< measurements of `records`, with the options `compare`
   std::vector<std::vector<std::string>> warnings;  ///< notes on each record
   compare::CompareOptions compare;                 ///< options of the comparison
   event::FitEventOptions events;                   ///< preparation of the records for fits
   thresholds::Acceptance by;                       ///< limits of fitness for purpose
-  double prior_sd = 0;                             ///< prior standard deviation of parameters, relative
-  int threads = 0;                                 ///< processor cores to use; 0: all
+  double prior_sd = 0;                             ///< relative prior standard deviation of parameters
+  int threads = 0;                                 ///< number of processor cores to use; 0: all
   /// Options of the command line that read these records, for the equivalent command of each step.
   std::string options;
   std::string plant_file;  ///< as given by the user
@@ -47,34 +47,34 @@ struct Step {
   std::string command;                     ///< equivalent command line; empty: none
   std::string sentence = {};               ///< result of the fit in words
   plant::PlantModel model;                 ///< model of this step
-  std::vector<Interval> intervals = {};    ///< of fitted parameters
-  calibrate::ResponseBands bands = {};     ///< of the response, of a fitted model; empty: not fitted
+  std::vector<Interval> intervals = {};    ///< intervals of the fitted parameters
+  calibrate::ResponseBands bands = {};     ///< 95 % bands of the response; empty: not a fitted model
   std::vector<std::string> held_out = {};  ///< names of records that the fit excluded
   double evidence = 0;       ///< 2 ln(Bayes factor) of an added effect over the refit without it
-  bool provisional = false;  ///< of first_step()
-  bool complete = false;     ///< the residual is noise in every bin
+  bool provisional = false;  ///< whether it is a first_step()
+  bool complete = false;     ///< whether the residual is noise in every bin
   std::shared_ptr<const compare::Played> played = {};  ///< comparison with all records
 };
 
-/// Returns the submitted model compared with all records.
+/// Returns the step of the submitted model, compared with all records.
 Step submitted_step(const Setup& setup);
-/// Returns the same with the switching times as detected, not fitted: a tenth of the time, for the first
-/// screen.
+/// Returns the same with detected instead of fitted switching times. It takes a tenth of the time and is for
+/// the first screen.
 Step first_step(const Setup& setup);
 
 /// Values of parameters by full name ("GENROU.H") [unit of the parameter].
 using Values = std::vector<std::pair<std::string, double>>;
 /// Returns the parameter of a full name. Throws InputError if there is none.
 sim::plant::ParameterId find_parameter(const sim::plant::Plant& plant, const std::string& name);
-/// Returns the model with other parameter values. Throws InputError: unknown name, or a value that the
-/// equations do not allow.
+/// Returns the model with other parameter values. Throws InputError if a name is unknown, or if a value is
+/// not finite or not allowed by the equations.
 plant::PlantModel with_values(plant::PlantModel model, const Values& values);
 
 /// Steps of one open page. All functions may be called from several threads.
 class Session {
  public:
-  /// Begins with the submitted model. Of more than `most` steps, manual changes that no other step builds on
-  /// are dropped, the oldest first; a step with its comparisons takes about 1 MB.
+  /// Begins with the submitted model. From `most` steps on, each new step replaces the oldest manual change
+  /// that no other step builds on. A step with its comparisons takes about 1 MB.
   Session(std::shared_ptr<const Setup> setup, std::shared_ptr<const Step> submitted, std::size_t most = 24);
   [[nodiscard]] const Setup& setup() const { return *setup_; }  ///< inputs
   /// Returns a step. Throws InputError if there is none of that number.
@@ -85,8 +85,8 @@ class Session {
   [[nodiscard]] std::vector<int> kept() const;
   /// Replaces the first step, which was provisional.
   void compared(std::shared_ptr<const Step> submitted);
-  /// Compares a step's model with other values with all records, and appends it as a step. Returns the number
-  /// of the step; `from` if nothing changes.
+  /// Changes values of the model of step `from`, compares it with all records, and appends it as a step.
+  /// Returns the number of the new step; `from` if no value changes.
   int change(int from, const Values& values);
   /// Appends the model of a fit, compared with all records. Returns the number of the step.
   int append(Step step);
@@ -105,11 +105,11 @@ class Session {
   std::map<int, std::string> diagnoses_;  ///< by step
 };
 
-/// Curves of one event during a drag.
+/// Simulated curves of one event while a slider moves.
 struct Preview {
-  std::vector<compare::ReplayedChannel> channels;  ///< as the channels of the step's comparison
+  std::vector<compare::ReplayedChannel> channels;  ///< in the order of the channels of the step's comparison
 };
-/// Plays one event into a step's model with other values, with the step's switching times and start.
+/// Plays one event into a step's model with other values. Switching times and start are those of the step.
 Preview preview(const Step& step, std::size_t event, const Values& values);
 
 }  // namespace swingbank::validate::live
