@@ -4,8 +4,8 @@
 
 namespace swingbank::validate::plant {
 
-/// Returns the model as load_plant_model(file), with the effects of `user_models` in its library. Throws
-/// InputError.
+/// Returns the model as load_plant_model(file) does, with the effects of the files `user_models` in its
+/// library too. Throws InputError.
 PlantModel load_plant_model(const std::filesystem::path& file,
                             const std::vector<std::filesystem::path>& user_models);
 

@@ -51,7 +51,7 @@ constexpr std::array kNameplateEquipment = {
     NameplateEquipment{"plant_control", "Plant control"},
 };
 
-/// A field at its place: in [nameplate] (no equipment), or in the table of an equipment.
+/// A field and its table: [nameplate] (null equipment), or the table of an equipment.
 struct PlacedField {
   const Field* field;
   const NameplateEquipment* equipment;
@@ -70,7 +70,7 @@ std::vector<PlacedField> placed_fields() {
   return all;
 }
 
-/// Returns whether the text is a date of ISO 8601 in the calendar: year, month or day.
+/// Returns whether the text is an ISO 8601 date that exists: a year, a month or a day.
 bool is_date(const std::string& text) {
   static const std::regex form(R"((\d{4})(?:-(\d{2})(?:-(\d{2}))?)?)");
   std::smatch part;
@@ -81,7 +81,7 @@ bool is_date(const std::string& text) {
       .ok();
 }
 
-/// Records a problem for each key of a table that is not in `known`, or if it is no table.
+/// Adds a problem for each key of the table that is not in `known`, and one if the value is not a table.
 void refuse_unknown(Config& config, const std::string& table, const std::vector<std::string>& known) {
   if (config.has(table) && !config.is_table(table))
     config.problem(table, table + " that is no table", "it has the fields of the nameplate",
@@ -126,7 +126,7 @@ void read_field(Config& config, const Field& field, const std::string& key, Name
     into.values[key] = text;
 }
 
-/// Returns whether the plant has the section of an equipment.
+/// Returns whether the plant has an effect of this section of the plant file.
 bool has_equipment(const sim::plant::Plant& plant, std::string_view section) {
   const auto is = [&](const sim::plant::Block& b) {
     return b.effect != nullptr && sim::kind_name(*b.effect) == section;

@@ -1,6 +1,6 @@
 #pragma once
-// Nameplate of a plant: owner, unit, ratings, dates and equipment, as text of [nameplate] in a plant file.
-// The list of its fields is here alone.
+// Nameplate of a plant ([nameplate] in a plant file): owner, unit, ratings, dates and equipment. No other
+// module lists its fields.
 #include <map>
 #include <span>
 #include <string>
@@ -53,8 +53,8 @@ struct Nameplate {
 /// Reads [nameplate] of a plant file. Problems are added to the config: unknown keys and equipment, empty
 /// texts, dates that are not ISO 8601 or not in the calendar, ratings that are not positive.
 Nameplate read_nameplate(Config& config);
-/// Returns the nameplate as text of a plant file; `text` and `number` write a value as TOML. Empty if no
-/// field is given.
+/// Returns the nameplate as text of a plant file; empty if no field is given. `text` and `number` format a
+/// value as TOML.
 std::string nameplate_text(const Nameplate& nameplate, std::string (*text)(std::string_view),
                            std::string (*number)(double));
 
@@ -67,8 +67,8 @@ struct NameplateLine {
   /// Returns the value with its unit; "missing" if it is missing.
   [[nodiscard]] std::string text() const;
 };
-/// Returns the given fields, and those that a verification report of this plant needs and that are missing.
-/// An equipment is needed if the plant has its section.
+/// Returns the given fields, and the missing fields that a verification report of this plant needs. The
+/// fields of an equipment are needed if the plant has its section.
 std::vector<NameplateLine> nameplate_lines(const Nameplate& nameplate, const sim::plant::Plant& plant);
 
 }  // namespace swingbank::validate::plant

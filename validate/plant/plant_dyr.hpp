@@ -8,9 +8,9 @@
 
 namespace swingbank::validate::plant {
 
-/// Returns the .dyr records of the model's machine and controls; `head` and nameplate become comments,
-/// `where` names the model in messages. A missing bus number, a user-defined model and a value without a
-/// column become problems.
+/// Returns the .dyr records of the model's machine, transformer and controls. `head` and the nameplate become
+/// comments; `where` names the model in messages. A missing bus number, a user-defined model, and a value
+/// without a column become problems.
 std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
                      Problems& problems);
 
@@ -32,7 +32,8 @@ struct WrittenRecords {
   std::string line;            ///< message: the written file, or the reason why none was written
   std::filesystem::path file;  ///< empty if none was written
 };
-/// Writes the records beside a plant file, with the same name; a comment lists the changed blocks.
+/// Writes the records into the folder of a plant file, under the same name with another extension. A comment
+/// lists the changed blocks.
 WrittenRecords write_records_beside(const std::filesystem::path& plant_file, const PlantModel& before,
                                     const PlantModel& model, RecordFormat format = RecordFormat::dyr);
 

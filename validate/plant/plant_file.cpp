@@ -45,7 +45,7 @@ std::string comment(const std::string& text) {
   return out + "\n";
 }
 
-/// Returns whether the plant file left this parameter at its default value, and it is unchanged.
+/// Returns whether the plant file did not give this parameter and its value is still the default.
 bool left_default(const PlantModel& model, const sim::plant::Block& block, std::size_t i) {
   const auto& p = block.effect->parameters[i];
   return block.p[i] == p.default_value &&
@@ -76,7 +76,7 @@ std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
   return all;
 }
 
-/// Appends the values before a rejected calibration that differ.
+/// Appends those values from before a rejected calibration that differ from the present ones.
 void append_submitted(std::string& text, const PlantModel& model) {
   if (!model.submitted) return;
   text +=
@@ -135,7 +135,8 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
   return text;
 }
 
-/// Returns the names of the files of user-defined models without folders, which must be unique.
+/// Returns the names of the files of user-defined models without folders. Throws InputError if two names are
+/// equal.
 std::vector<std::string> user_model_names(const PlantModel& model) {
   std::vector<std::string> names;
   Problems problems;
@@ -149,8 +150,8 @@ std::vector<std::string> user_model_names(const PlantModel& model) {
   return names;
 }
 
-/// Checks that the text, with absolute paths of the files of user-defined models, reads back to the same
-/// model.
+/// Throws InputError if the text of the model, with absolute paths of the files of user-defined models, is
+/// not read back as the same model.
 void check(const PlantModel& model, const std::vector<std::string>& provenance) {
   std::vector<std::string> user_models;
   for (const auto& user_model : model.user_models) user_models.push_back(fs::absolute(user_model).string());

@@ -30,7 +30,7 @@ constexpr std::string_view kConverter = "converter";  ///< section of a converte
 
 using sim::library::EffectLibrary;
 
-/// Returns a text of each effect of one slot; `section` selects machines or converters.
+/// Returns the member `text` of each effect of one slot; `section` selects machines or converters.
 std::vector<std::string> texts_of(const EffectLibrary& library, Slot slot, std::string_view section,
                                   std::string_view sim::Effect::*text) {
   std::vector<std::string> texts;
@@ -55,9 +55,9 @@ void warn_unusual(const Config& config, const std::string& section, const sim::p
   }
 }
 
-/// Reads one section: the effect's name and all of its parameters, which are checked for consistency if all
-/// could be read. `section` is a slot's name, or "limiter[1]". Parameters left at default values, and unusual
-/// ones, are noted in the model.
+/// Reads one section: the effect's name and all of its parameters. The parameters are checked for consistency
+/// if all could be read. `section` is a slot's name, or "limiter[1]". Default parameters are added to
+/// PlantModel::defaults, unusual values to PlantModel::warnings.
 sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const std::string& section) {
   const EffectLibrary& library = model.library;
   const Branch effects{.words = effects_of(library, slot, section),
@@ -140,7 +140,7 @@ void read_slot(Config& config, PlantModel& model, Slot slot, std::vector<sim::pl
   std::ranges::move(read_several(config, model, slot), std::back_inserter(into));
 }
 
-/// Returns whether the grid's files already fill the slot.
+/// Returns whether the grid's files already contain an effect of the slot.
 bool filled(const sim::plant::Plant& plant, Slot slot) {
   if (sim::is_shared(slot)) return false;
   if (slot == Slot::transformer) return plant.transformer.effect != nullptr;
@@ -152,8 +152,7 @@ std::string_view name_in(const sim::plant::Plant& plant, Slot slot) {
   return at->effect->dyr_name;
 }
 
-/// Reads all sections other than [machine] and [converter] into the plant, in addition to those of a grid's
-/// files.
+/// Reads all sections except [machine] and [converter], and adds their effects to those of a grid's files.
 void read_around(Config& config, PlantModel& model) {
   sim::plant::Plant& plant = model.plant;
   for (const Slot slot : sim::kSlots) {
@@ -184,7 +183,7 @@ void read_around(Config& config, PlantModel& model) {
                      why, "remove the section");
 }
 
-/// Returns the value of a parameter of a plant, nullptr if it has no such effect or parameter.
+/// Returns the value of a parameter of a plant; nullptr if the plant has no such effect or parameter.
 double* value_in(sim::plant::Plant& plant, const std::string& effect, const std::string& name) {
   const auto find = [&](sim::plant::Block& block) -> double* {
     if (!block.effect || block.effect->name != effect) return nullptr;
@@ -198,7 +197,7 @@ double* value_in(sim::plant::Plant& plant, const std::string& effect, const std:
   return value;
 }
 
-/// Reads the values before a rejected calibration, by effect and parameter.
+/// Reads the values from before a rejected calibration, by effect and parameter.
 void read_submitted(Config& config, PlantModel& model) {
   if (!config.has("submitted")) return;
   sim::plant::Plant plant = model.plant;
@@ -246,7 +245,8 @@ sim::Conventions read_conventions(Config& config, double hz) {
   return read;
 }
 
-/// Notes all parameters of these effects as left at default values by a replacement.
+/// Adds all parameters of these effects to PlantModel::defaults: the effects replace others of the case and
+/// have default values.
 void note_defaults(PlantModel& model, const std::vector<std::string>& effects) {
   for (const auto& name : effects)
     for (const auto& p : model.library.find(name)->parameters)
@@ -289,8 +289,8 @@ void read_from_grid(Config& config, PlantModel& model) {
   model.warnings = unit.notes;
 }
 
-/// Returns whether the first line that is no comment consists of columns, as in a record: no line of TOML has
-/// three cells before a table or a value begins.
+/// Returns whether the first line that is not a comment consists of columns, as in a record. In a TOML file,
+/// this line begins a table or contains '='.
 bool is_columns(std::string_view text) {
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -414,7 +414,7 @@ PlantModel model_of_unit(const sim::grid::Unit& unit, sim::Conventions conventio
   model.conventions.frequency = unit.frequency;
   model.record_base.frequency = unit.frequency;
   model.record_base.mva = unit.system_mva;
-  // Cases in per unit give every bus 1 kV, or none; the voltage of a plant is higher.
+  // In per-unit cases, every bus has 1 kV or no voltage. The rated voltage of a plant is higher.
   constexpr double kPerUnitCase = 1.0;
   if (unit.kv > kPerUnitCase) model.record_base.kv = unit.kv;
   note_defaults(model, unit.defaults);

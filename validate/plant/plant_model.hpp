@@ -17,31 +17,32 @@ namespace swingbank::validate::plant {
 
 /// Plant with its records' bases and the sources of its effects.
 struct PlantModel {
-  std::string name, origin;        ///< origin: the file it was read from
+  std::string name, origin;        ///< name of the plant; file from which it was read
   std::string sha256;              ///< of that file's bytes
-  sim::plant::Plant plant;         ///< its generation is set from each record
-  sim::Conventions conventions;    ///< conventions of the simulator that the parameters are for
+  sim::plant::Plant plant;         ///< plant; each record sets its power
+  sim::Conventions conventions;    ///< conventions of the simulator for which the parameters are valid
   record::RecordBase record_base;  ///< bases of "pu" in the records of this plant
   record::ReadOptions reading;     ///< columns and time range of its records
   std::vector<std::filesystem::path> user_models =
       {};                ///< files of user-defined models that define some of its effects
   int bus = 0;           ///< bus number in its case; 0: not given
   std::string id = "1";  ///< machine identifier in its case
-  /// Output in its case; none: unknown. Used to check records, never as an initial condition.
+  /// Power and voltage of the unit in its case; empty: unknown. Used to check records, never as an initial
+  /// condition.
   std::optional<sim::grid::Dispatch> dispatch = {};
   Nameplate nameplate = {};  ///< nameplate of the plant, for reports
-  /// Parameters ("SEXS.TE") that the file leaves at their default values (`standard = true`).
+  /// Parameters ("SEXS.TE") that have default values because the file does not give them (`standard = true`).
   std::vector<std::string> defaults = {};
   /// Plant before a calibration that was rejected; its parameters do not compensate for a missing effect.
   std::optional<sim::plant::Plant> submitted = {};
   /// The whole plant, if `plant` is only one component of it.
   std::optional<sim::plant::Plant> whole = {};
-  /// Suspicious entries of the file that do not refuse it, with their lines.
+  /// Warnings about suspicious entries of the file, with their lines.
   std::vector<std::string> warnings = {};
   /// Returns references to plant and conventions; the model must outlive them.
   [[nodiscard]] sim::plant::PlantUnderTest under_test() const { return {plant, conventions}; }
-  /// Compiled effects and those of `user_models`. The plant's blocks point into it, so a copy of the plant
-  /// must not outlive the model and its copies.
+  /// Compiled effects and those of `user_models`. The plant's blocks point into the library, so a copy of the
+  /// plant must not outlive the model and its copies.
   sim::library::EffectLibrary library = {};
 };
 
@@ -53,11 +54,12 @@ std::string subject(const PlantModel& model);
 /// fault of the file: unknown keys, effects or parameters (the known ones are listed), missing ones, wrong
 /// types, values that the equations do not allow. Unusual values become warnings, each with its line.
 PlantModel load_plant_model(const std::filesystem::path& file);
-/// Reads a plant file from its text; `file` denotes it in messages, and relative paths refer to its folder.
+/// Reads a plant file from its text. `file` names it in messages; relative paths refer to its folder.
 PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file);
 /// Returns the JSON Schema of plant files.
 std::string plant_schema();
-/// Returns the model to fit or diagnose: as before a rejected calibration, otherwise unchanged.
+/// Returns the model to fit or diagnose: with the values from before a rejected calibration, or else
+/// unchanged.
 PlantModel as_submitted(PlantModel model);
 /// Returns the model of one unit of a case, with the values of the case; `files` names its files in messages.
 /// The base of the records is the system's. Warnings report violated orderings of parameters, and data that

@@ -10,16 +10,17 @@
 namespace swingbank::validate::plant {
 namespace {
 
-/// Typical values of large machines on their own base (Kundur 1994, tables 3.2 and 4.2): medians, and bounds
-/// of the product of inertia [s] and reactance [pu], which does not depend on the base.
+/// Typical values of large machines on their own base (Kundur 1994, tables 3.2 and 4.2): medians of inertia h
+/// [s] and reactance x [pu], and bounds of their product [s pu], which does not depend on the base.
 struct Typical {
   double h, x, least, most;
 };
 constexpr Typical kSynchronous = {4.0, 1.6, 0.6, 40.0}, kTransient = {4.0, 0.3, 0.12, 8.0};
-/// Ratio of bases beyond the variation among machines, and one that few machines reach.
+/// Ratios of bases that indicate another base. kFar: beyond the variation among machines. kFarForOne: few
+/// machines reach it, so it suffices if one of the values is unusual by itself.
 constexpr double kFar = 3.0, kFarForOne = 2.0;
 
-/// Returns the ratio of the machine's probable base to that of the data; none if they agree.
+/// Returns the ratio of the machine's probable base to that of the data; empty if the data are plausible.
 std::optional<double> ratio_of_bases(const Typical& typical, double h, double x, double far) {
   if (!(h > 0 && x > 0) || h * x < typical.least || h * x > typical.most) return {};
   const double ratio = std::sqrt(h / x * typical.x / typical.h);

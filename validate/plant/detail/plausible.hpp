@@ -12,9 +12,9 @@ struct ForeignBase {
   std::string what;  ///< "H = 500 s and Xd = 0.02 pu"
   std::string why, remedy;
 };
-/// Returns a finding if inertia and reactance together indicate a machine of another size than `base_mva`: on
-/// a base that is too small, H is too large by the same factor by which Xd is too small. If one of its values
-/// is unusual by itself, a smaller ratio suffices.
+/// Returns a finding if inertia and reactance together indicate a machine rating other than `base_mva`; empty
+/// if not. On a base that is too small, H is too large and Xd is too small by the same factor. If one of the
+/// machine's values is unusual by itself, a smaller factor suffices.
 std::optional<ForeignBase> foreign_base(const sim::plant::Block& machine, double base_mva);
 
 }  // namespace swingbank::validate::plant

@@ -10,7 +10,7 @@ namespace {
 
 using Kind = record::StagedEvent::Kind;
 
-constexpr double kLatest = 1e5;      ///< [s]
+constexpr double kLatest = 1e5;      ///< largest magnitude of a time [s]
 constexpr double kLargestStep = 10;  ///< largest step of a reference or of Efd [pu]
 
 std::vector<std::string> kind_names() {

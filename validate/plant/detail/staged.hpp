@@ -8,7 +8,7 @@
 
 namespace swingbank::validate::plant {
 
-/// Reads every [[event]] of the file; its faults are added to the config.
+/// Reads every [[event]] of the file. Problems are added to the config.
 std::vector<record::StagedEvent> read_staged_events(Config& config);
 /// Returns the events as text of a plant file; `number` formats a value exactly.
 std::string staged_text(const std::vector<record::StagedEvent>& events, std::string (*number)(double));
