@@ -7,9 +7,10 @@
 
 namespace swingbank::validate::playin {
 
-/// Returns the factor of each state on the tolerance of a step [its unit per pu], between 1 and
-/// kMostAllowance. By the plant linearised about its start, an error of this size never moves a compared
-/// channel by more than the tolerance. `interval` is the record's sample interval [s].
+/// Returns the factor on the tolerance of a step for each state [unit of the state per pu], between 1 and
+/// kMostAllowance. According to the plant linearised about its start, a state error of tolerance times factor
+/// never changes a compared channel by more than the tolerance. `interval`: sample interval of the record
+/// [s].
 std::vector<double> allowances(const LinearPlant& plant, std::span<const Output> compared, double interval);
 
 /// Upper bound of the factor: the linearisation about the start does not describe a plant at a limit.

@@ -35,7 +35,7 @@ struct RecordedMachine {
   static void emf(const T*, const T*, T*, T& er, T& ei) {
     er = ei = T(0.0);
   }
-  /// The signals contain the current already.
+  /// Does nothing, because the signals already contain the recorded current.
   template <class T>
   static void current(const T*, const T*, T*, sim::Signals<T>&) {}
   template <class T>
@@ -80,8 +80,8 @@ constexpr Probe kProbes[] = {
     {"Ifd", 2.0, [](sim::Signals<double>&, double* m, double by) { m[recorded::dIfd] += by; }},
 };
 
-/// Returns the signals that the component's blocks depend on, tested at one operating point. Throws
-/// InputError if it has no steady state.
+/// Returns the signals on which the component's blocks depend, tested at one operating point. Throws
+/// InputError if this point has no steady state.
 std::vector<std::string> used_signals(const sim::plant::PlantUnderTest& part, double Efd, double Tm) {
   auto p = sim::plant::block_parameters(part.plant);
   p.front() = recorded::operating_parameters<double>(Efd, Efd, Tm);

@@ -1,6 +1,7 @@
 #pragma once
 // One component of a plant tested alone: an exciter with its blocks, a governor, or a machine. The record
-// supplies the outputs of the others; for an exciter or a governor a recorded machine replaces the real one.
+// supplies the outputs of the other components. For an exciter or a governor, a recorded machine replaces the
+// modelled one.
 #include <string>
 #include <vector>
 
@@ -9,8 +10,8 @@
 
 namespace swingbank::validate::playin {
 
-/// Returns a machine without equations and parameters: current, speed, field current and stabiliser output
-/// are those of the run's record (Given).
+/// Returns a machine without equations and parameters. Its current, speed, field current and stabiliser
+/// output are those of the run's record (Given).
 const sim::Effect& recorded_machine();
 /// Returns whether the plant's machine is recorded_machine().
 bool is_recorded(const sim::plant::Plant& plant);
@@ -26,13 +27,13 @@ sim::plant::Plant component_of(const sim::plant::Plant& plant, record::Component
 sim::plant::Plant put_back(const sim::plant::Plant& whole, const sim::plant::Plant& part,
                            record::Component component);
 
-/// Returns the columns that a record of the component must have, one word of each list: its compared outputs,
-/// and the inputs of its blocks with their present parameters.
+/// Returns the columns that a record of the component must have: its compared outputs, and the inputs on
+/// which its blocks depend with their present parameters. One column of each inner list suffices.
 std::vector<std::vector<std::string>> needed_columns(const sim::plant::PlantUnderTest& component,
                                                      record::Component of);
 
-/// Returns the component's compared outputs that the record contains. `measured_states`: also speed, Efd and
-/// Ifd, if they are not inputs.
+/// Returns the compared outputs of the record's component that the record contains. `measured_states`: also
+/// speed, Efd and Ifd, if they are not inputs.
 std::vector<Output> compared_outputs(const record::Record& record, bool measured_states);
 
 /// Returns the record's values of an output.

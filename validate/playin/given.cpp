@@ -8,7 +8,7 @@ namespace {
 
 using At = Given::At;
 
-/// A signal of a record, its destination, and its offset.
+/// A signal of a record, its destination, and the offset that is subtracted from it.
 struct Source {
   double At::*to;
   const std::vector<double>* values;
@@ -57,7 +57,7 @@ Given::Given(const record::Record& played, const std::vector<Switching>& switchi
              const OperatingPoint& start)
     : before_(steady_values(start)) {
   auto plain = switchings;
-  for (Switching& s : plain) s.has_before = s.has_after = false;  // these are one-sided voltages
+  for (Switching& s : plain) s.has_before = s.has_after = false;  // known one-sided values are voltages
   const std::vector<Source> all = sources(played, start);
   for (std::size_t i = 0; i < all.size(); i += 2) {
     const Source* second = i + 1 < all.size() ? &all[i + 1] : nullptr;

@@ -1,5 +1,5 @@
 #pragma once
-// Recorded inputs of a component beside the voltage, as functions of time.
+// Recorded inputs of a component other than the voltage, as functions of time.
 #include <optional>
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace swingbank::validate::playin {
 
-/// Splines through the samples of each segment, like the voltage's. Signals that the record lacks keep their
+/// Splines through the samples of each segment, as for the voltage. Signals that the record lacks keep their
 /// initial values.
 class Given {
  public:
@@ -39,7 +39,7 @@ inline bool is_part(const record::Record& r) {
 }
 /// Sets every input and every compared channel of a component to its initial value.
 void set_to_initial(record::Record& record, const OperatingPoint& start);
-/// Returns the inputs of the record's component; none if the whole plant is tested.
+/// Returns the inputs of the record's component; empty if the record is of a whole plant.
 std::optional<Given> given_of(const record::Record& record, const std::vector<Switching>& switchings,
                               const OperatingPoint& start);
 

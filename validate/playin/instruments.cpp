@@ -11,10 +11,10 @@ namespace {
 
 using Kind = SensitivityParameter::Kind;
 
-/// Oversampling of the response for instruments with memory. A step is then filtered over a time that is
-/// shorter by this factor.
+/// Oversampling of the response for instruments with memory. At the record's own rate, a step of the response
+/// would extend over a whole sample interval before it is filtered.
 constexpr int kFine = 8;
-/// Step of a parameter as a fraction of its range; the error of the sensitivity does not depend on it.
+/// Step of a parameter for central differences, as a fraction of its range. The result hardly depends on it.
 constexpr double kMove = 1e-5;
 
 /// Returns the lag of an angle that is integrated from the chain's frequency [s].
@@ -70,7 +70,7 @@ void thin(std::vector<T>& values, std::size_t stride) {
 /// One run and its sensitivities.
 class Observed {
  public:
-  /// `parameters` must not belong to the instruments.
+  /// `parameters` must not include parameters of the instruments.
   Observed(const PlaybackRun& run, std::span<const SensitivityParameter> parameters)
       : run_(run), chain_(run.plant->measurements), inner_(run), parameters_(parameters) {
     const record::Record& r = *run.record;
@@ -176,7 +176,8 @@ class Observed {
     inner_.record = &fine_;
     inner_.step_limit = run_.step_limit * kFine;
   }
-  /// Converts sensitivities to P and Q of the start from the plant's values to the measured ones.
+  /// Converts the sensitivities to the initial P and Q of the plant into those to the measured initial
+  /// values.
   void turn_starts(Response& r) const {
     const auto find = [&](Kind kind) {
       return std::ranges::find(parameters_, kind, &SensitivityParameter::kind) - parameters_.begin();
@@ -230,7 +231,7 @@ namespace {
 
 constexpr int kProbeSamples = 64;
 
-/// Returns the test signal of an instrument: moving phasors.
+/// Returns the test signal of an instrument: phasors whose magnitude and angle change with time.
 sim::Phasors probe() {
   constexpr double kRate = 240.0;
   sim::Phasors p{kRate, 60.0, {}, {}, std::vector<double>(kProbeSamples, 0.0)};
@@ -240,7 +241,7 @@ sim::Phasors probe() {
   }
   return p;
 }
-/// Returns the instrument's parameters away from their null values, beyond rounding.
+/// Returns parameters of the instrument that differ from their null values by far more than rounding errors.
 std::vector<double> away_from_null(const sim::Effect& instrument) {
   constexpr double kAway = 0.05;  // of the range
   auto p = instrument.default_parameters();

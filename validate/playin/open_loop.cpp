@@ -17,9 +17,10 @@ namespace {
 using sim::P8;
 constexpr auto kBlockLanes = std::size_t(P8::lanes);
 
-/// ROS34PW2, a linearly implicit (W-) formula of order 3 for any approximation of the Jacobian: L-stable, and
-/// a lag much faster than a step ends exactly at its input (J. Rang, L. Angermann, BIT 45 (2005) 761, table
-/// 4). Lower triangles by rows: weights of earlier stages in the state and in the right-hand side of a stage.
+/// ROS34PW2, a linearly implicit W-method of order 3: any approximation of the Jacobian suffices (J. Rang, L.
+/// Angermann, BIT 45 (2005) 761, table 4). It is L-stable, so a lag much faster than a step ends exactly at
+/// its input. The lower triangles by rows are the weights of earlier stages: kAlpha in the state of a stage,
+/// kGammas in its right-hand side.
 constexpr int kFormulaStages = 4;
 using Stages = std::array<std::array<double, kFormulaStages>, kFormulaStages>;
 constexpr double kGamma = 0.435866521508459;
@@ -30,7 +31,7 @@ constexpr Stages kGammas = {{{kGamma},
                              {-0.90338057013044082, 0.054180672388095326, kGamma},
                              {0.24212380706095346, -1.2232505839045147, 0.54526025533510214, kGamma}}};
 
-/// The formula in terms of u = gammas k, which avoids products with the Jacobian (E. Hairer, G. Wanner,
+/// The method in terms of u = gammas k, which avoids products with the Jacobian (E. Hairer, G. Wanner,
 /// Solving Ordinary Differential Equations II, IV.7).
 struct Transformed {
   Stages inverse{};                         ///< inverse of gammas
@@ -114,13 +115,13 @@ class BlockBatch {
     response_ = made_ == Made::field ? s.Efd : s.Tm;
   }
   void evaluate(const Seen& at) { evaluate(at, x_, dx_); }
-  /// Takes a step of the length with number `length` in `lengths`, from the last point of evaluate(); `seen`
-  /// are the inputs of the stages after the first.
+  /// Integrates over the step lengths[length] from the last point of evaluate(). `seen`: inputs of the stages
+  /// after the first.
   void step(std::size_t length, std::span<const Seen, kFormulaStages - 1> seen) {
     const double per_h = 1 / lengths_[length];
     const Triangles& triangles = triangles_for(length);
     take_stages(seen, per_h, triangles, std::make_index_sequence<kFormulaStages>());
-    // the formula is stiffly accurate: its weights are those of the last stage, and one for its own u
+    // the method is stiffly accurate: its weights are those of the last stage, and 1 for that stage's own u
     for (std::size_t i = 0; i < x_.size(); ++i)
       x_[i] = weighted<kFormulaStages - 1>(x_[i], i, kFormula.a.back()) + u_.back()[i];
     clip(x_);
@@ -190,7 +191,7 @@ class BlockBatch {
     }
   }
   /// Returns the LU factors of 1 / (gamma h) - Jacobian. Controls are chains of lags, so few entries are
-  /// non-zero. Pivots are large, because the lags' own rates are negative.
+  /// non-zero. No pivoting is needed: the lags' own rates are negative, so the diagonal is large.
   const Triangles& triangles_for(std::size_t length) {
     Triangles& triangles = triangles_[length];
     const std::size_t n = x_.size();
@@ -238,7 +239,7 @@ class BlockBatch {
   double ifd_, efd_ = 0, tm_ = 0;
   std::vector<P8> c_, x_, dx_, trial_, scratch_, jacobian_;
   std::vector<char> there_;  ///< whether an entry of the LU factors is non-zero
-  Entries left_, right_;     ///< those below and above the diagonal
+  Entries left_, right_;     ///< non-zero entries below and above the diagonal
   std::array<std::vector<P8>, kFormulaStages> u_;
   const std::vector<double>& lengths_;  ///< step lengths [s]
   std::vector<Triangles> triangles_;    ///< LU factors for each step length, empty until needed
@@ -253,7 +254,7 @@ Seen mixed(const Seen& a, const Seen& b, double share) {
           of(a.speed, b.speed), of(a.Ifd, b.Ifd), of(a.Efd, b.Efd), of(a.Tm, b.Tm)};
 }
 
-/// Returns h without the rounding errors of times, so that equal steps compare equal.
+/// Returns h rounded, so that equal steps compare equal despite the rounding errors of times.
 double rounded(double h) { return static_cast<double>(static_cast<float>(h)); }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 // Open-loop simulation of a plant's controls: their inputs are those of an earlier run, without feedback of
-// their field voltage or torque. SIMD batches of eight plants, fixed steps.
+// their field voltage or torque. It simulates SIMD batches of eight plants with fixed steps.
 #include <Eigen/Dense>
 #include <array>
 #include <span>
@@ -16,8 +16,8 @@ enum class Made { field, torque };
 /// Open-loop simulation of a plant's controls: the machine's signals are given, and no output feeds back.
 class OpenLoop {
  public:
-  /// Times of the response: `times` from the first switching time on (without switchings, all), and both
-  /// sides of every switching time. Before that the controls are in steady state.
+  /// A time of the response. The response covers `times` from the first switching time on (all if there is no
+  /// switching) and both sides of every switching time. Before the first, the controls are in steady state.
   struct TimePoint {
     double t;     ///< [s]
     int segment;  ///< of the voltage curve
@@ -25,8 +25,8 @@ class OpenLoop {
   /// `times`: ends of the steps [s].
   OpenLoop(SeenAlong run, const std::vector<double>& times, const sim::Conventions& conventions);
 
-  /// Returns the times within the steps between `times` at which the formula evaluates the inputs [s]. The
-  /// signals should be known there.
+  /// Returns `times` and the times between them at which the integration formula evaluates the inputs [s].
+  /// The inputs should be known at these times (see seen_along()).
   [[nodiscard]] static std::vector<double> looks(const std::vector<double>& times);
 
   [[nodiscard]] const std::vector<TimePoint>& times() const { return times_; }  ///< times of the response
@@ -39,7 +39,7 @@ class OpenLoop {
   struct Step {
     double h;  ///< to the next time point [s]; 0: across a switching time
     Seen begin;
-    std::size_t length = 0;           ///< number of h in `lengths_`, if h > 0
+    std::size_t length = 0;           ///< index of h in `lengths_`, if h > 0
     std::array<Seen, 3> stages = {};  ///< inputs at the formula's stages after the first
   };
   [[nodiscard]] Seen between(int segment, double t) const;
@@ -49,8 +49,8 @@ class OpenLoop {
   std::vector<std::size_t> first_of_;  ///< first entry of each segment in `seen_`, then the end
   sim::Conventions conventions_;
   std::vector<TimePoint> times_;
-  std::vector<Step> steps_;      ///< from each time point but the last
-  std::vector<double> lengths_;  ///< different lengths of the steps [s]
+  std::vector<Step> steps_;      ///< one step from each time point except the last
+  std::vector<double> lengths_;  ///< distinct lengths of the steps [s]
 };
 
 }  // namespace swingbank::validate::playin

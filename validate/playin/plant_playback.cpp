@@ -339,7 +339,7 @@ class Solver {
     }
     return worst;
   }
-  /// The states as consecutive numbers, each a value and its sensitivities, with the same step sums for all.
+  /// The states as an array of doubles: value and sensitivities of each state, all with the same step sums.
   static constexpr std::size_t kNumbers = sizeof(T) / sizeof(double);
   static_assert(kNumbers * sizeof(double) == sizeof(T) && std::is_trivially_copyable_v<T>);
   static double* numbers(std::vector<T>& states) { return reinterpret_cast<double*>(states.data()); }

@@ -45,9 +45,9 @@ class Given;
 class TrajectoryCache;
 
 /// Specification of one run: plant, inputs and initial state. If the record's breaker opens, the voltage is
-/// constant until the first switching. From then on, or from the start of an open circuit, the current is
-/// zero and V is the plant's own. P, Q and Pm of the response are per unit on the record's base, the other
-/// outputs on the machine's.
+/// constant until the first switching. From then on, the current is zero and the plant determines V; in an
+/// open circuit this holds from the start. P, Q and Pm of the response are per unit on the record's base, the
+/// other outputs on the machine's.
 struct PlaybackRun {
   const sim::plant::Plant* plant = nullptr;  ///< plant that is simulated
   sim::Conventions conventions = {};         ///< conventions of the simulator
@@ -61,15 +61,15 @@ struct PlaybackRun {
   PiecewiseLinear torque = {}, field = {};  ///< added to Tm, Efd [pu]
   double tolerance = 1e-10;                 ///< error per step, relative to 1 + |state|
   std::vector<double> allowance = {};       ///< factor on the tolerance, for each state; empty: 1
-  double until = 1e300;                     ///< later samples are left out [s]
-  double least_step = 0.0;                  ///< step accepted whatever its error [s]; 0: none
+  double until = 1e300;                     ///< later samples are not simulated [s]
+  double least_step = 0.0;                  ///< step length accepted whatever the error [s]; 0: none
   int step_limit = 2'000'000;               ///< maximum number of steps
-  /// Outputs with sensitivities from the plant linearised along the trajectory: a few per cent off at a
-  /// tolerance of 1e-5, at a fraction of the cost. Empty: sensitivities of every output by differentiation of
-  /// each step, which at limits need a tolerance of 1e-9.
+  /// Outputs whose sensitivities are computed from the plant linearised along the trajectory. At a tolerance
+  /// of 1e-5 they have errors of a few per cent, at a fraction of the cost. Empty: sensitivities of every
+  /// output by differentiation of each step, which at limits need a tolerance of 1e-9.
   std::vector<Output> linear_sensitivities = {};
   /// Trajectory cache: a run without sensitivities stores its trajectory here, and the same run with linear
-  /// sensitivities reuses it. Whoever changes another field must reset it. Null: no cache.
+  /// sensitivities reuses it. It must be reset when another field changes. Null: no cache.
   std::shared_ptr<const TrajectoryCache>* cache = nullptr;
 };
 
@@ -79,9 +79,9 @@ struct SensitivityParameter {
   enum class Kind {
     parameter,  ///< `parameter` of the plant
     switching,  ///< switching time `index` of the curve [s]
-    turn,       ///< turn of the voltage's angle at that time [rad]
-    P,          ///< of the operating point [pu on the record's base]; of a component Efd and Pm
-    Q,          ///< likewise
+    turn,       ///< jump of the voltage's angle at switching `index` of the curve [rad]
+    P,          ///< initial P [pu on the record's base]; with a recorded machine, initial Efd and Pm
+    Q,          ///< initial Q [pu on the record's base]
     angle,      ///< initial angle [rad]
     speed,      ///< initial speed [pu]
     torque,     ///< hat function `index` of PlaybackRun::torque [pu]
@@ -111,10 +111,10 @@ struct Response {
   [[nodiscard]] const std::vector<double>& of(Output o) const { return value[static_cast<int>(o)]; }
 };
 
-/// Returns the plant's response to the curve. Steps end at every sample, switching and switching time of an
-/// effect. At a switching time that is a sensitivity parameter, the sensitivities step by the difference of
-/// the derivatives before and after it. Throws InputError if the operating point has no steady state or the
-/// integration fails.
+/// Returns the plant's response to the curve. Steps end at every sample, at every switching of the curve, and
+/// at every switching time of an effect. If a switching time is a sensitivity parameter, the sensitivities to
+/// it step there by the difference of the derivatives before and after it. Throws InputError if the operating
+/// point has no steady state or the integration fails.
 Response simulate_playback(const PlaybackRun& run, std::span<const SensitivityParameter> parameters = {});
 
 /// Inputs of a plant's controls at one point of a run, at the machine's terminal and on its base.
@@ -141,8 +141,8 @@ struct LinearPlant {
 };
 /// Linearises the plant about the run's start. Throws InputError if the operating point has no steady state.
 LinearPlant linearise(const PlaybackRun& run);
-/// Returns the derivative of each state's rate with respect to the run's torque or field at the start [1/s
-/// per pu]. Throws as linearise().
+/// Returns the derivative of each state's rate of change with respect to the run's torque or field, at the
+/// start [1/s per pu]. Throws as linearise().
 Eigen::VectorXd rates_by_input(const PlaybackRun& run, SensitivityParameter::Kind input);
 
 }  // namespace swingbank::validate::playin

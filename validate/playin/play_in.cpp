@@ -13,7 +13,8 @@
 namespace swingbank::validate::playin {
 namespace {
 
-/// Smallest step [s]. A limit reached within a step makes a corner, which no step length resolves.
+/// Step length accepted whatever the error [s]. A limit reached within a step causes a corner, which no step
+/// length resolves.
 constexpr double kLeastStep = 1e-7;
 constexpr int kMinSteady = 5;  ///< minimum number of samples of a mean and a standard deviation
 
@@ -35,13 +36,13 @@ double angle_drift(const record::Record& r, int n) {
   return std::abs(slope) > std::max(5 * error, 1e-7) ? slope : 0.0;
 }
 
-/// Polynomial through the first n values, in powers of a time that runs from -1 to 1 over them.
+/// Least-squares polynomial of the first n values, in powers of a time that runs from -1 to 1 over them.
 struct PolynomialFit {
   Eigen::VectorXd by_power, residual;
   double last_error = 0;  ///< standard error of the highest power, with autocorrelation of the residual
 };
-/// Returns the factor between the number of samples and the effective one: the sum of autocorrelations up to
-/// their first zero.
+/// Returns the ratio of the number of samples to the effective number of independent samples: the sum of
+/// autocorrelations up to their first zero.
 double memory(const Eigen::VectorXd& r) {
   const double power = r.squaredNorm();
   double sum = 1;
@@ -67,14 +68,14 @@ PolynomialFit polynomial_fit(const std::vector<double>& t, const std::vector<dou
   c.last_error = std::sqrt(variance * (basis.transpose() * basis).inverse()(powers, powers));
   return c;
 }
-/// Sets the start to the trajectories of angle, V, P and Q at the first sample if the angle is curved: then
-/// the grid accelerates or decelerates before the event, and a uniformly rotating frame deviates at both
-/// ends. Returns false if it is not curved.
+/// If the pre-event angle is curved, sets the start to the trends of angle, V, P and Q at the first sample
+/// and returns true. The frequency of the grid then changes before the event, so a frame that rotates at
+/// constant speed would deviate at both ends.
 bool start_on_trajectory(const record::Record& record, OperatingPoint& point) {
-  // [rad]; across a transient reactance of 0.3 pu this is a third of a per cent of MVA
+  // [rad]; changes the power across a transient reactance of 0.3 pu by 0.33 % of the MVA
   constexpr double kLeastBend = 1e-3;
   constexpr double kErrors = 5;            // standard errors, as for the rate
-  constexpr double kLongerThanASwing = 3;  // [s]; within a swing every angle is curved
+  constexpr double kLongerThanASwing = 3;  // [s]; within one rotor swing, every angle is curved
   const int n = point.samples;
   const double length = record.t[static_cast<std::size_t>(n - 1)] - record.t.front();
   if (length < kLongerThanASwing || record.component != record::Component::plant) return false;

@@ -18,9 +18,9 @@ struct PlayInOptions {
   int step_limit = 2'000'000;                              ///< maximum number of integration steps
 };
 
-/// Returns the mean of the samples before the first switching, or of the first `pre_event` seconds if there
-/// is none. If the angle is curved, the trajectories are evaluated at the first sample. Throws InputError if
-/// fewer than 5 samples remain.
+/// Returns the mean of the samples before the first switching or staged event. Without either, it is the mean
+/// of the first `pre_event` seconds. If the pre-event angle is curved, the result is the trend of the
+/// quantities at the first sample instead. Throws InputError if there are fewer than 5 samples.
 OperatingPoint pre_event_point(const record::Record& record, const std::vector<Switching>& switchings,
                                double pre_event);
 
@@ -42,14 +42,14 @@ const std::vector<double>& output_of(const Playback& playback, Output output);
 void take_outputs(Response& response, Playback& back);
 
 /// Returns the plant's response to the curve, and to further inputs in a component's record. The plant starts
-/// in equilibrium at the pre-event mean; empty exciter and governor slots hold Efd and Tm constant. If the
-/// pre-event angle changes at a constant rate, the reference frame rotates at that rate. Throws InputError if
-/// the operating point has no steady state, or if the integration fails (with state and time).
+/// in equilibrium at the pre-event mean. Without an exciter Efd is constant, and without a governor Tm. If
+/// the pre-event angle changes at a constant rate, the reference frame rotates at that rate. Throws
+/// InputError if the operating point has no steady state, or if the integration fails (with the time).
 Playback play_in(const sim::plant::PlantUnderTest& tested, const record::Record& record,
                  const VoltageCurve& curve, const PlayInOptions& options = {});
 
-/// Returns the response V and theta to the record's P and Q as inputs; P and Q stay empty. Throws InputError
-/// as play_in(), and if no terminal voltage delivers them.
+/// Returns the response V and theta to the record's P and Q as inputs; Playback::P and Q stay empty. Throws
+/// InputError as play_in(), and if no terminal voltage delivers P and Q.
 Playback play_in_power(const sim::plant::PlantUnderTest& tested, const record::Record& record,
                        const std::vector<Switching>& switchings, const PlayInOptions& options = {});
 

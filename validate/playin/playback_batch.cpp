@@ -18,7 +18,7 @@ using sim::P8;
 constexpr auto kTogether = std::size_t(P8::lanes);
 constexpr double kLeastOfAll = 1e-9;  ///< smallest step; a run that needs a shorter one is abandoned [s]
 constexpr int kStepsOfAll =
-    3;  ///< step limit of the batch / step limit of one plant; common steps are shorter
+    3;  ///< ratio of the batch's step limit to that of one plant; common steps are shorter
 
 P8 size_of(P8 a) { return sim::positive_part(a) + sim::positive_part(-a); }
 
@@ -196,7 +196,7 @@ class Together {
   double t_ = 0, h_ = 1e-3;
 };
 
-/// Returns true if the run can share its steps with other runs of a batch.
+/// Returns whether the run can share its steps with other runs of a batch.
 bool can_go_together(const PlaybackRun& run) {
   constexpr double kRoughTolerance = 1e-5;
   return run.tolerance >= kRoughTolerance && !is_recorded(*run.plant) && !run.given && run.torque.t.empty() &&

@@ -10,7 +10,7 @@
 namespace swingbank::validate::playin {
 namespace {
 
-constexpr double kStampRounding = 1e-4;  ///< of a sample interval: rounding of times printed with 6 decimals
+constexpr double kStampRounding = 1e-4;  ///< rounding of times with 6 decimals, relative to a sample interval
 
 Complex phasor(const record::Record& r, std::size_t k) { return std::polar(r.V[k], r.theta[k]); }
 

@@ -11,18 +11,18 @@ namespace swingbank::validate::playin {
 
 using switching::Switching;
 
-/// Cubic spline (not-a-knot) through the voltage phasors of each segment, extrapolated to its ends. Phasors,
-/// rather than V and theta, remain smooth if V is near zero and theta turns. Segments of 3, 2 or 1 points get
-/// the parabola, line or constant through them.
+/// Cubic spline (not-a-knot) through the voltage phasors of each segment, extrapolated to its ends. Phasors
+/// are interpolated because they remain smooth when V is near zero and theta changes fast. In segments of 3,
+/// 2 or 1 points, the curve is the parabola, line or constant through them.
 class VoltageCurve {
  public:
-  /// Throws InputError if switchings lie outside the record or leave a segment without any point.
+  /// Throws InputError if a switching is outside the record or a segment contains no point.
   VoltageCurve(const record::Record& record, std::vector<Switching> switchings);
 
   /// Returns the curve of the same record with other switching times. It shares the splines if no one-sided
   /// voltage is known and every switching time stays within its uncertainty, or between the same samples. A
-  /// voltage restored from behind a filter has knots closer to a switching time than its uncertainty; they
-  /// remain in their segment. Throws as the constructor.
+  /// voltage reconstructed from filtered samples may have knots closer to a switching time than the
+  /// uncertainty of that time. These knots remain in their segment. Throws as the constructor.
   [[nodiscard]] VoltageCurve moved(const record::Record& record, std::vector<Switching> switchings) const;
 
   /// Returns the curve with the angle advanced to theta + lead d(theta)/dt at every knot; `lead` in s.
@@ -44,7 +44,7 @@ class VoltageCurve {
   struct Segment {
     std::vector<double> t;
     std::vector<Complex> v, second_derivative;  ///< knots and second derivatives there
-    double rate = 0;                            ///< nearly uniform inner knots per second; 0: too few
+    double rate = 0;  ///< mean number of inner knots per second, to find an interval; 0: fewer than 4 knots
   };
   static void fit(Segment& segment);
   [[nodiscard]] static Complex slope(const Segment& segment, std::size_t knot);

@@ -20,12 +20,13 @@ using NodeKind = Trace::Node::Kind;
 using sim::P8, by_pack::Matrix, by_pack::kLanes;
 
 constexpr double kNodeMove = 1e-6;  ///< step of a finite difference, relative to 1 + |state|
-constexpr double kAtLimit = 1e-9;   ///< distance of a state at its limit, relative to 1 + |state|
-/// A step is halved if an entry of A, times the step, changes by more within it: a limit of a signal acts.
+constexpr double kAtLimit = 1e-9;   ///< distance below which a state is at its limit, relative to 1 + |state|
+/// A step is halved if any entry of A, times the step, changes by more than this within the step. Such a
+/// change indicates that a limit of a signal begins or ceases to act.
 constexpr double kBend = 0.05;
 
 /// Linearised plant at a node: x' = A x + B, y = C x + D. A and C refer to states and inputs, B and D to
-/// sensitivity parameters. The last row of C and D is the guard that passes zero.
+/// sensitivity parameters. The last row of C and D belongs to the guard that passes zero.
 struct Linear {
   Linear(std::size_t n, std::size_t inputs, std::size_t m, std::size_t outputs)
       : A(n, inputs), B(n, m), C(outputs + 1, inputs), D(outputs + 1, m), limits(n, m), clamped(n, 0) {}
@@ -122,8 +123,9 @@ class LinearSensitivities {
     bool by_state;     ///< perturbation of a state; else of a sensitivity parameter
     std::size_t pack;  ///< columns that receive their sensitivities
   };
-  /// Derivatives, outputs and one guard in all lanes. Differences are taken between lanes, not to the
-  /// trajectory: what has no effect then has a sensitivity of exactly zero.
+  /// Derivatives, outputs and one guard in all lanes. Finite differences are taken between two such
+  /// evaluations, not from the stored trajectory, so that a perturbation without effect gives a sensitivity
+  /// of exactly zero.
   struct Evaluated {
     std::vector<P8> dx;
     std::array<P8, kOutputs> y;
@@ -182,7 +184,8 @@ class LinearSensitivities {
     guards_.assign(static_cast<std::size_t>(unperturbed_->of_plant().guards()), P8(0.0));
   }
 
-  /// Finds the states at their limits, and the admissible perturbations of the others.
+  /// Finds the states at their limits, and the perturbations of the other states that stay within their
+  /// limits.
   void find_limits(const double* x, const double* dx) {
     for (std::size_t i = 0; i < n_; ++i) move_[i] = kNodeMove * (1 + std::abs(x[i]));
     std::ranges::fill(now_.clamped, 0);
@@ -223,13 +226,13 @@ class LinearSensitivities {
   /// Linearises the plant at a node into `now_`.
   void linearise_node(std::size_t k) {
     const Trace::Node& node = trace_.nodes[k];
-    // a perturbed copy may lie on the other side of the discontinuity
+    // A and B of the previous node are kept, because a perturbed copy may be beyond the discontinuity
     const bool discontinuous = node.passed.guard >= 0 || (k > 0 && trace_.nodes[k - 1].passed.guard >= 0);
     if (discontinuous) now_ = before_;
     linearise(point(k), discontinuous, node.kind == NodeKind::sample, node.passed.guard);
   }
-  /// Linearises the plant at a point into `now_`. `keep`: A and B remain; `shows`: with its outputs; `guard`:
-  /// with this guard, if any.
+  /// Linearises the plant at a point into `now_`. `keep`: A and B remain unchanged; `shows`: outputs are
+  /// included; `guard`: guard that is included, -1: none.
   void linearise(const Point& at, bool keep, bool shows, int guard) {
     find_limits(at.x, at.dx);
     place(*unperturbed_, at.x);
@@ -265,8 +268,8 @@ class LinearSensitivities {
     equations.of_plant().guard(equations.c.data(), x_.data(), equations.signals, guards_.data());
     to.guard = guards_[static_cast<std::size_t>(guard)];
   }
-  /// Sets the columns of inputs that have begun by t: effect of the input times the value of their hat
-  /// function.
+  /// Sets the columns of B and D of the hat functions that are not zero at t: effect of the input times the
+  /// value of the hat function.
   void raise_hats(double t) {
     while (begun_ < begins_.size() && begins_[begun_].first <= t)
       active_ = std::max(active_, begins_[begun_++].second);
@@ -291,14 +294,14 @@ class LinearSensitivities {
     for (std::size_t o = 0; o <= shown_; ++o) now_.D(o, d) = now_.C(o, input) * height;
   }
 
-  /// Clamped states have the sensitivities of their limits.
+  /// Sets the sensitivities of clamped states to those of their limits.
   void take_limits() {
     for (std::size_t i = 0; now_.any_clamped && i < n_; ++i)
       for (std::size_t p = 0; now_.clamped[i] && p < wide(); ++p) S_.pack(p)[i] = now_.limits.pack(p)[i];
   }
-  /// Integrates the sensitivities between two points, at which `before_` and `now_` are linearised. Where the
-  /// equations bend in between, the interval is halved until the bend no longer matters; in a run that
-  /// explodes, at most as often as the playback may take steps.
+  /// Integrates the sensitivities between two points, at which `before_` and `now_` are the linearisations.
+  /// The interval is halved while bends() holds, but at most PlaybackRun::step_limit times in a run, in case
+  /// the run diverges.
   void integrate(const Point& from, const Point& to) {
     const double h = to.t - from.t, half = from.t + h / 2;
     if (!(half > from.t && half < to.t) || halvings_ >= run_.step_limit || !bends(h)) return step(h);
@@ -313,6 +316,7 @@ class LinearSensitivities {
     now_ = std::move(end);
     integrate(middle, to);
   }
+  /// Returns whether A changes by more than kBend / h within the step.
   [[nodiscard]] bool bends(double h) const {
     for (std::size_t p = 0; p < left_.packs(); ++p)
       for (std::size_t i = 0; i < n_; ++i) {
@@ -322,8 +326,9 @@ class LinearSensitivities {
       }
     return false;
   }
-  /// Returns the middle of a step, within the limits: of the cubic through states and derivatives at both
-  /// ends, or of the line with the derivative of that end at which the state is free.
+  /// Returns the midpoint of a step, with each state within its limits. It is on the cubic through states and
+  /// derivatives at both ends. A state that is clamped at one end only is on the line with the derivative at
+  /// the other end.
   Point between(const Point& from, const Point& to, std::vector<double>& x, std::vector<double>& dx) {
     auto& equations = *unperturbed_;
     const double h = to.t - from.t, t = from.t + h / 2;
@@ -391,7 +396,8 @@ class LinearSensitivities {
       for (std::size_t i = 0; i < n_; ++i) S_(i, d) -= moved / passed.rate * (before[i] - after[i]);
     }
   }
-  /// Moves them across a switching of the curve, whose time and turn may be sensitivity parameters.
+  /// Moves the sensitivities across a switching of the curve, whose time and angle jump may be sensitivity
+  /// parameters.
   void switch_over(std::size_t k) {
     const int switching = trace_.nodes[k].switching;
     const double *before = trace_.dx.data() + (k - 1) * n_, *after = trace_.dx.data() + k * n_;
@@ -416,9 +422,9 @@ class LinearSensitivities {
   std::span<const SensitivityParameter> parameters_;
   const Trace& trace_;
   Response& response_;
-  const std::size_t n_, m_, inputs_;  ///< states; sensitivity parameters; states, torque and field voltage
-  std::size_t active_ = 0;            ///< sensitivity parameters whose input has begun
-  std::size_t begun_ = 0;             ///< entries of `begins_` that have begun
+  const std::size_t n_, m_, inputs_;  ///< numbers of states; sensitivity parameters; states, torque and field
+  std::size_t active_ = 0;            ///< 1 + largest index of a sensitivity parameter whose input has begun
+  std::size_t begun_ = 0;             ///< number of entries of `begins_` that have begun
   std::vector<std::pair<double, std::size_t>>
       begins_;                                    ///< start of a parameter's input [s], and its number + 1
   std::array<std::vector<std::size_t>, 2> hats_;  ///< parameters of the hat functions of torque and field

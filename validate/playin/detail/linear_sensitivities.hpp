@@ -11,7 +11,8 @@ namespace swingbank::validate::playin {
 
 /// Trajectory of a run without sensitivities: every step and sample, and both sides of every switching time.
 struct Trace {
-  /// A guard of the equations that passes zero just after a node, with its rate [1/s].
+  /// A guard function (zero at a discontinuity of the equations) that passes zero just after a node, with its
+  /// rate [1/s].
   struct Passed {
     int guard = -1;
     double rate = 0;
@@ -33,11 +34,11 @@ struct Trace {
 bool can_be_linear(const PlaybackRun& run);
 
 /// Computes the sensitivities of a response from the run's trajectory. Between two nodes the state
-/// sensitivities obey \f$S' = A S + B\f$, with A and B from differences over 1e-6 at both nodes. They are
-/// integrated by the two-derivative formula of order 3 whose stability function is the (1,2) Pade
-/// approximation (B. L. Ehle, SIAM J. Math. Anal. 4 (1973) 671), which damps modes faster than a step at
-/// once. A step within which the equations bend, because a limit begins or ceases to act, is halved. Returns
-/// false if the result is not finite.
+/// sensitivities obey \f$S' = A S + B\f$, with A and B from finite differences (step 1e-6) at both nodes.
+/// They are integrated by the two-derivative formula of order 3 whose stability function is the (1,2) Pade
+/// approximation (B. L. Ehle, SIAM J. Math. Anal. 4 (1973) 671). It damps modes that are faster than a step
+/// within that step. A step is halved if A changes within it, because a limit begins or ceases to act.
+/// Returns false if the result is not finite.
 bool add_linear_sensitivities(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
                               const Trace& trace, Response& response);
 

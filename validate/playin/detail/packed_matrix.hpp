@@ -1,5 +1,5 @@
 #pragma once
-// Small matrices by packs of columns, one SIMD register a row: products and inverses of linearised plants.
+// Small matrices in packs of eight columns, with one SIMD register per row of a pack: products and inverses.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -22,7 +22,7 @@ class Matrix {
   [[nodiscard]] std::size_t packs() const { return packs_; }
   P8* pack(std::size_t p) { return all_.data() + p * rows_; }
   [[nodiscard]] const P8* pack(std::size_t p) const { return all_.data() + p * rows_; }
-  /// Row i + 1 of the column is kLanes numbers after row i.
+  /// Returns the first element of a column; the element of the next row is kLanes doubles further.
   double* column(std::size_t j) { return reinterpret_cast<double*>(pack(j / kLanes)) + j % kLanes; }
   [[nodiscard]] const double* column(std::size_t j) const {
     return reinterpret_cast<const double*>(pack(j / kLanes)) + j % kLanes;
@@ -36,7 +36,7 @@ class Matrix {
   std::vector<P8> all_;
 };
 
-/// Adds factors * from to `count` rows of one pack from row `first` on; `inner`: rows of `from`.
+/// Adds factors * from to `count` rows of one pack, from row `first` on. `inner`: number of rows of `from`.
 template <std::size_t count>
 void add_rows(const Matrix& factors, std::size_t first, std::size_t inner, const P8* from, P8* to) {
   P8 sum[count];
@@ -81,7 +81,7 @@ inline void invert(Matrix& left, Matrix& inverse) {
     };
     for (std::size_t p = 0; p < inverse.packs(); ++p) eliminate(inverse.pack(p));
     for (std::size_t p = left.packs(); p-- > k / kLanes;)
-      eliminate(left.pack(p));  // the pack of the factors last
+      eliminate(left.pack(p));  // the pack that contains the factors comes last
   }
 }
 

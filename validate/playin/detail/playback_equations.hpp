@@ -24,7 +24,7 @@ inline double hat(const std::vector<double>& knots, std::size_t k, double t) {
   return std::max(0.0, (knots[k + 1] - t) / (knots[k + 1] - knots[k]));
 }
 
-/// Access to the sensitivities of a scalar; without effect for types that carry none.
+/// Access to the sensitivities of a scalar; without effect for types without sensitivities.
 template <class T>
 struct Seeds {
   static void add(T&, std::size_t, double) {}
@@ -35,8 +35,8 @@ template <>
 struct Seeds<sim::D8> {
   static void add(sim::D8& x, std::size_t parameter, double by) { x.d[parameter] += by; }
   static double get(const sim::D8& x, std::size_t parameter) { return x.d[parameter]; }
-  /// Returns the size for error control; sensitivities count a hundredth, because a fit tolerates their
-  /// errors better.
+  /// Returns the magnitude for error control. Sensitivities are weighted by 0.01, because a fit tolerates
+  /// larger errors of them.
   static double size(const sim::D8& x) {
     double worst = std::abs(x.a);
     for (const double d : x.d) worst = std::max(worst, 1e-2 * std::abs(d));
@@ -51,6 +51,7 @@ struct Side {
   bool isolated = false;       ///< disconnected from the grid
 };
 
+/// Equations of one run with scalars of type T.
 template <class T>
 class PlaybackEquations {
  public:
@@ -91,8 +92,8 @@ class PlaybackEquations {
   void each(F f) const {
     for (std::size_t i = 0; i < parameters_.size(); ++i) f(parameters_[i], i);
   }
-  /// Moves to the other side of a switching of the curve. A turn of the voltage's angle that the record lacks
-  /// is applied to the rotor with opposite sign, because only the angle between the two matters.
+  /// Moves to the other side of a switching of the curve. An angle jump of the voltage that the record lacks
+  /// is applied to the rotor with opposite sign, because only the angle between voltage and rotor matters.
   void pass(int switching, T* x) {
     ++side.segment;
     side.isolated = side.isolated || breaker_;
@@ -260,7 +261,7 @@ class PlaybackEquations {
   std::span<const SensitivityParameter> parameters_;
   sim::plant::PlantEquations<T> equations_;
   std::vector<T> scratch_;
-  bool recorded_, breaker_;  ///< the machine is the recorded one; its breaker opens
+  bool recorded_, breaker_;  ///< whether the machine is the recorded one; whether its breaker opens
   bool has_torque_ = false, has_field_ = false;
   int gate_ = -1;    ///< index of the state compared with a recorded gate
   Complex voltage_;  ///< cached voltage of the last call

@@ -57,7 +57,7 @@ class PowerPlayback {
  private:
   struct SwitchingTime {
     double time;
-    bool switches;  ///< of the record; otherwise an effect's
+    bool switches;  ///< whether it is a switching of the record; otherwise of an effect
   };
   void collect_switching_times() {
     for (const auto& s : run_.power->switchings()) times_.push_back({s.time, true});
@@ -66,8 +66,8 @@ class PowerPlayback {
     std::ranges::stable_sort(times_, {}, &SwitchingTime::time);
   }
 
-  /// Returns the voltage from E conj(V) = |V|^2 + Z conj(S), a quadratic in |V|^2 with two solutions, whose
-  /// product is |Z S|^2; the recorded voltage selects one.
+  /// Returns the voltage from E conj(V) = |V|^2 + Z conj(S). This is a quadratic equation in |V|^2 with two
+  /// solutions, whose product is |Z S|^2. The recorded voltage selects one of them.
   [[nodiscard]] std::optional<Complex> behind_impedance(Complex e, Complex s, double recorded) const {
     const double* z = equations_.impedance(c_.data());
     const Complex b = Complex(z[0], z[1]) * std::conj(s);
@@ -201,12 +201,12 @@ class PowerPlayback {
   std::vector<double> c_, x_, trial_, scratch_;
   std::array<std::vector<double>, sim::plant::dp54::kStages> k_;
   double Efd_ = 0, Tm_ = 0, to_machine_;
-  Complex voltage_, terminal_;  ///< at the grid's side, at the machine
+  Complex voltage_, terminal_;  ///< voltage at the grid side and at the machine [pu]
   sim::Signals<double> signals_;
   std::vector<SwitchingTime> times_;
   std::size_t next_ = 0;
   int segment_ = 0, steps_ = 0;
-  bool unsolved_ = false;  ///< at the last evaluation
+  bool unsolved_ = false;  ///< whether the last evaluation found no voltage
   double t_ = 0, h_ = 1e-3;
   PowerResponse response_;
 };
@@ -221,7 +221,7 @@ VoltageCurve power_curve(const record::Record& record, std::vector<Switching> sw
     power.V.push_back(std::hypot(record.P[k], record.Q[k]));
     power.theta.push_back(std::atan2(record.Q[k], record.P[k]));
   }
-  for (auto& s : switchings) s.has_before = s.has_after = false;  // these are one-sided voltages
+  for (auto& s : switchings) s.has_before = s.has_after = false;  // known one-sided values are voltages
   return {power, std::move(switchings)};
 }
 

@@ -7,6 +7,7 @@
 
 namespace swingbank::validate::playin {
 
+/// Specification of one run with P and Q as inputs.
 struct PowerPlaybackRun {
   const sim::plant::Plant* plant = nullptr;
   sim::Conventions conventions = {};
@@ -22,7 +23,7 @@ struct PowerPlaybackRun {
 };
 
 /// Response at each sample of the record. No network determines the angle: a constant error of P accelerates
-/// the rotor, so theta and speed lose significance with time after the event.
+/// the rotor, so the errors of theta and speed grow with time after the event.
 struct PowerResponse {
   std::vector<double> V, theta, speed, Efd, Ifd;  ///< [pu], [rad] (unwrapped), [pu]
   int steps = 0;

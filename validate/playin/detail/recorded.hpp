@@ -1,13 +1,13 @@
 #pragma once
-// Inputs of the recorded machine: values at the operating point in its parameters, later changes in its
-// scratch memory.
+// Inputs of the recorded machine: its parameters contain the values at the operating point, and its scratch
+// memory the changes since then.
 #include <vector>
 
 namespace swingbank::validate::playin::recorded {
 
 enum Parameter { Efd, Tm, Ifd0, kParameters };  ///< at the operating point [pu on the machine's base]
 enum Coefficient { Ifd, kCoefficients };
-enum Move { speed, dIfd, Vs, kMoves };  ///< since the operating point [pu]
+enum Move { speed, dIfd, Vs, kMoves };  ///< changes since the operating point [pu]
 
 template <class T>
 std::vector<T> operating_parameters(const T& efd, const T& ifd, const T& tm) {
