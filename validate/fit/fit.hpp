@@ -18,8 +18,8 @@ using event::EventState, event::InputKind;
 using noise::EventFit;
 
 /// A parameter that a fit may change. `prior_sd` is its prior standard deviation relative to its value; 0: no
-/// prior. The fit moves the logarithm if moves_by_logarithm(), otherwise the value. In place of a value of 0,
-/// the scale is 5 % of the parameter's range, at most 1.
+/// prior. If the value is 0, it is relative to 5 % of the parameter's range, at most 1. The fit moves the
+/// logarithm if moves_by_logarithm(), otherwise the value.
 struct FreeParameter {
   sim::plant::ParameterId id;  ///< parameter of the plant
   double prior_sd = 0.3;       ///< relative, see above
@@ -127,11 +127,11 @@ struct FitOptions {
   /// The fit is compared only with other brief fits. The final cost of a lenient fit is then computed with
   /// the allowance.
   bool brief = false;
-  bool steady_start = false;           ///< every event starts in its pre-event steady state
+  bool steady_start = false;           ///< whether every event starts in its pre-event steady state
   double enough = 1e-5;                ///< relative change of the cost that ends the fit
   std::vector<EventState> start = {};  ///< start values of the event states; empty: those of the FitEvent
   std::vector<double> values = {};     ///< start values of the free parameters; empty: the plant's
-  bool errors = true;  ///< computes standard errors, which costs one further evaluation of all sensitivities
+  bool errors = true;  ///< whether to compute standard errors: one further evaluation of all sensitivities
   /// The fit ends early if it cannot reach this goal. The prediction assumes that every remaining step
   /// reduces the cost by the larger relative reduction of the last two steps.
   Goal goal = {};

@@ -8,8 +8,8 @@
 namespace swingbank::validate::fit {
 
 /// Returns the unit of a parameter's axis in `information` [unit of the parameter]: one prior standard
-/// deviation. Without a prior it is the magnitude of the value. In place of a magnitude of 0, 5 % of the
-/// parameter's range is used, at most 1.
+/// deviation. Without a prior it is the magnitude of the value, or 5 % of the parameter's range (at most 1)
+/// if the value is 0.
 double axis_unit(const sim::plant::Plant& plant, const FreeParameter& parameter);
 
 /// Response of one event with its sensitivities at a point of the fit, per axis_unit and per prior standard

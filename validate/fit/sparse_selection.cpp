@@ -214,10 +214,12 @@ class Selection {
     double cost = std::numeric_limits<double>::infinity();
   };
   /// Fits a set from its predicted optimum. A fit that does not reach the predicted cost is repeated from the
-  /// given values. Refit::cost reduces the fit's excess over the full fit by the factor that the quadratic
-  /// model predicts if the other parameters may move. The model overestimates this reduction for a limit,
-  /// because a limit that is not reached has no further effect on the cost. The estimated excess is therefore
-  /// at least the predicted one, or the fit's own if that is lower.
+  /// given values.
+  ///
+  /// The fit's cost exceeds that of the full fit. This excess becomes smaller if the other parameters may
+  /// move, and Refit::cost applies the factor that the quadratic model predicts. For a limit the predicted
+  /// factor is too small, because a limit that is not reached has no further effect on the cost. The
+  /// estimated excess is therefore at least the predicted one, or the fit's own if that is lower.
   [[nodiscard]] Refit refit(const Set& set, bool errors = false) const {
     const Prediction fixed = predict(set, kExactly), soft = predict(set);
     FitOptions o = kSearch;
@@ -256,8 +258,8 @@ class Selection {
     set.erase(set.begin() + static_cast<std::ptrdiff_t>(i));
     return set;
   }
-  /// Drops members that the others make redundant, the least important first. They exist because only few
-  /// sets of each smaller size were refitted.
+  /// Drops members that the others make redundant, the least important first. A set may contain such members,
+  /// because only few sets of each smaller size were refitted.
   void drop_idle(Set& set, Refit& chosen) const {
     while (!set.empty()) {
       std::vector<double> evidence;

@@ -16,7 +16,7 @@ struct WrongParameter {
   FittedParameter fit;  ///< start: given value; value and interval: with the other parameters of the set free
   /// Rise of the cost with this parameter at its given value and the rest of the set refitted.
   double evidence = 0;
-  /// `evidence` relative to the cost of the given model above the fit of all parameters, 0 to 1.
+  /// `evidence` divided by the cost of the given model minus the cost of the fit of all parameters; 0 to 1.
   double share = 0;
   /// Names of single parameters that explain the records equally well in its place.
   std::vector<std::string> tied = {};

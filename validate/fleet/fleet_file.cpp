@@ -16,7 +16,7 @@ bool is_name(const std::string& name) {
   return !name.empty() && name.size() <= 100 && std::ranges::all_of(name, allowed);
 }
 
-/// Reads the options of one plant or of all; missing ones keep their values.
+/// Reads the options of one plant or of all plants; missing options keep their values.
 void read_options(Config& c, const std::string& at, FleetPlant& p) {
   p.prior_sd = c.optional<double>(at + "spread", p.prior_sd,
                                   {0.001, 2.0, "relative", "prior standard deviation of the parameters"});

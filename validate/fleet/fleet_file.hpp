@@ -14,7 +14,7 @@ struct FleetPlant {
   std::filesystem::path model;       ///< plant file
   std::vector<std::string> records;  ///< files and globs as written; relative ones are below `Fleet::folder`
   double prior_sd = thresholds::parameters.prior_sd;  ///< as DiagnoseOptions::prior_sd
-  bool power_only = false;                            ///< ignore recorded speed, Efd and Ifd
+  bool power_only = false;                            ///< whether to ignore recorded speed, Efd and Ifd
 };
 /// Contents of a fleet file.
 struct Fleet {

@@ -26,8 +26,8 @@ std::string probability_of(const FleetRow& r, const std::string& name) {
   const auto p = r.probabilities.find(name);
   return p == r.probabilities.end() ? "" : report::probability_text(p->second);
 }
-/// Text of the effects: "SEXS 97 %", "TGOV1 + SEXS 88 %", "SEXS 62 % or ESST1A 34 %", "SEXS 49 % or 3
-/// others".
+/// Returns the text of the effects, for example "SEXS 97 %", "TGOV1 + SEXS 88 %", "SEXS 62 % or ESST1A 34 %",
+/// or "SEXS 49 % or 3 others".
 std::string effect_text(const FleetRow& r) {
   std::vector<std::string> all;
   if (!r.effects.empty()) all.push_back(joined(r.effects, " + "));
@@ -98,7 +98,7 @@ std::vector<report::Cell> row_cells(const FleetRow& r) {
           chance_text(r.chance)};
 }
 
-/// Sort key in descending order of `v`; NaN comes last.
+/// Returns a sort key for descending order of `v`; NaN comes last.
 double descending(double v) { return std::isnan(v) ? 1 : -v; }
 
 /// Returns the path of a plant's report, relative to the folder of the table; empty: none.

@@ -11,9 +11,10 @@
 
 namespace swingbank::validate::fleet {
 
-/// Sorts the rows, the worst first: by verdict (unexplained, missing effect, adequate after refit but not
-/// fit for purpose as submitted, failed, adequate), then by the largest error of the submitted model [% of
-/// MVA], the normalised RMS of the refitted one, and the name.
+/// Sorts the rows, the worst first. The order of verdicts is unexplained, missing effect, adequate after
+/// refit but not fit for purpose as submitted, failed, adequate. Rows with the same verdict are sorted by the
+/// largest error of the submitted model [% of MVA], then by the normalised RMS of the refitted one, then by
+/// name.
 void sort_worst_first(std::vector<FleetRow>& rows);
 /// Returns the table: plant, verdict, missing effect, side, largest error of the submitted model and its
 /// place, fitness for purpose, normalised RMS (refitted and held out), and bound of the probability under

@@ -1,7 +1,7 @@
 #pragma once
 // Hypotheses on missing effects: every effect of a library in a free slot, every group of parameters at their
-// null values, every measurement fault, every convention. In addition, a control that does not share its slot
-// may be replaced by every other effect of this slot. The code lists no effect by name, so a new effect is
+// null values, every measurement fault, every convention. In addition, a control in a slot for one effect may
+// be replaced by every other effect of this slot. The code lists no effect by name, so a new effect is
 // included automatically.
 #include <string>
 #include <vector>
@@ -48,7 +48,7 @@ struct RecordContents {
 std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
                                        const sim::library::EffectLibrary& library,
                                        const RecordContents& recorded = {});
-/// Returns a hypothesis for every control that does not share its slot and every other effect of that slot.
+/// Returns the replacements of every control in a slot for one effect by every other effect of that slot.
 std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
                                          const sim::library::EffectLibrary& library);
 /// Returns extensions of `h` that also free one group of the added effect's parameters that are at null

@@ -306,7 +306,8 @@ class Identifying {
   std::vector<Identified> tried_;
   Reduced torque_, field_;
   double none_;  ///< cost of the base model
-  /// Lowest cost of all fits after those of the hypotheses that cannot be identified alone.
+  /// Lowest cost of the fits in the choice of the leader and of the hypotheses that cannot be identified
+  /// alone.
   double others_ = std::numeric_limits<double>::infinity();
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Posterior probabilities of the explanations tried, including that none of them is right.
+// Posterior probabilities of the tried explanations, and the probability that none of them is right.
 #include <cstddef>
 #include <string>
 #include <vector>

@@ -10,8 +10,7 @@ namespace swingbank::validate::live {
 /// Receives the messages of a fit, from any thread. Member "type":
 /// - "progress": phase (event::Phase), item, done, total
 /// - "preliminary": sentence, candidates with probability so far, inferred inputs of each event
-/// - "reached": a fit that is better than those before: its reduced chi-square (chi2) and its curves [pu]
-/// (events)
+/// - "reached": reduced chi-square (chi2) and curves (events) [pu] of a fit that is better than those before
 /// - "diagnosis": the result of a diagnosis
 /// - "end": the end of a diagnosis
 /// - "step": a new model, for step_of_fit()

@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Largest ratio of a positive parameter's slider limits to its value, upwards and downwards.
+/// The slider of a positive parameter extends at most from 1/kSliderReach to kSliderReach times its value.
 constexpr double kSliderReach = 30;
 
 /// Returns the sliders of a model: one for every parameter that is not a code.

@@ -9,7 +9,7 @@ namespace swingbank::validate::live {
 /// Returns the names of the files that save() may write.
 std::vector<std::string> saved_files();
 /// Writes the model of a step and the report of its comparison into the folder. Returns {"files": [paths],
-/// "notes": [text]}.
+/// "notes": [text], "model": path of the plant file, "command": command line that compares it}.
 nlohmann::json save(const Session& session, int step, OutputFolder& folder,
                     const report::Provenance& provenance);
 

@@ -19,7 +19,7 @@ namespace swingbank::validate::plant {
 struct PlantModel {
   std::string name, origin;        ///< name of the plant; file from which it was read
   std::string sha256;              ///< of that file's bytes
-  sim::plant::Plant plant;         ///< plant; each record sets its power
+  sim::plant::Plant plant;         ///< the plant; each record sets its power
   sim::Conventions conventions;    ///< conventions of the simulator for which the parameters are valid
   record::RecordBase record_base;  ///< bases of "pu" in the records of this plant
   record::ReadOptions reading;     ///< columns and time range of its records

@@ -248,7 +248,7 @@ class Solver {
     int side = 0;  // side of zero of the last guess
     for (int round = 0; round < kMostRounds && found.after - found.before > kTimeError; ++round) {
       const double wide = found.after - found.before, guess = found.before + wide * low / (low + high);
-      // a little further, so that the next guess lies on the other side
+      // shifted a little, so that the next guess lies on the other side of zero
       const double middle = std::clamp(guess - 0.4 * side * kTimeError, found.before + 0.01 * kTimeError,
                                        found.after - 0.01 * kTimeError);
       attempt(middle);

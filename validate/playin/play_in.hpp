@@ -14,7 +14,7 @@ namespace swingbank::validate::playin {
 struct PlayInOptions {
   double tolerance = 1e-10;  ///< error per step, relative to 1 + |state|
   double pre_event = 1.0;    ///< length of the pre-event window of a record without switchings [s]
-  double until = std::numeric_limits<double>::infinity();  ///< later samples are left out [s]
+  double until = std::numeric_limits<double>::infinity();  ///< later samples are not simulated [s]
   int step_limit = 2'000'000;                              ///< maximum number of integration steps
 };
 

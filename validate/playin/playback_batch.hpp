@@ -1,6 +1,6 @@
 #pragma once
 // Simulation of eight plants in a SIMD batch with one played-in voltage. The plants differ in values only.
-// The batch costs a search over many starts one run instead of eight.
+// A search over many starts thus needs one run for eight plants.
 #include <optional>
 #include <span>
 #include <vector>

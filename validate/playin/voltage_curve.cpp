@@ -14,9 +14,9 @@ constexpr double kStampRounding = 1e-4;  ///< rounding of times with 6 decimals,
 
 Complex phasor(const record::Record& r, std::size_t k) { return std::polar(r.V[k], r.theta[k]); }
 
-/// Returns the second derivatives of the not-a-knot cubic through n >= 4 knots: the third derivative is
-/// continuous at the second and the last but one. The system is tridiagonal after elimination of the end
-/// values (de Boor, A Practical Guide to Splines, IV).
+/// Returns the second derivatives of the not-a-knot cubic spline through n >= 4 knots. Its third derivative
+/// is continuous at the second knot and at the last but one. The system is tridiagonal after elimination of
+/// the end values (de Boor, A Practical Guide to Splines, IV).
 std::vector<Complex> not_a_knot(const std::vector<double>& t, const std::vector<Complex>& v) {
   const std::size_t n = t.size();
   std::vector<double> h(n - 1), low(n), diagonal(n), high(n);

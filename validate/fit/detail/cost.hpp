@@ -21,7 +21,7 @@ struct Setting {
   const noise::WhitenedEvents* events;
   std::vector<Axis> axes;
   double tolerance;
-  bool lenient = false;  ///< of the search; see FitOptions
+  bool lenient = false;  ///< see FitOptions::lenient
   bool goes_on = false;  ///< whether a lenient search reuses sensitivities that predicted a step well
   /// Whether the start passes can_exist_beside(`plant`). If so, the search refuses plants that do not pass.
   bool can_exist = false;

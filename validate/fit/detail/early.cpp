@@ -63,7 +63,7 @@ std::pair<double, double> left(const noise::WhitenedEvent& whole, const playin::
   return {early / std::max(1, first), late / std::max(1, then)};
 }
 
-/// Returns the start state of an event; empty if it starts as prepared.
+/// Returns the start state of an event; empty if it starts at the switching times of its FitEvent.
 std::optional<EventState> early_state(const sim::plant::PlantUnderTest& tested,
                                       const noise::WhitenedEvent& whole, const FitOptions& options) {
   const event::FitEvent& e = whole.event;

@@ -6,7 +6,7 @@
 
 namespace swingbank::validate::fit::fitting {
 
-/// Returns the upper triangular R with R'R = e'e. A column that depends linearly on the others gives a zero
+/// Returns the upper triangular R with R'R = e'e. A column that depends linearly on earlier ones gives a zero
 /// row.
 noise::RowMatrix triangle_of(const noise::RowMatrix& e);
 

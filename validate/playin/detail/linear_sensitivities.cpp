@@ -117,11 +117,11 @@ class LinearSensitivities {
   }
 
  private:
-  /// Eight copies of the plant in a SIMD batch, each perturbed along another sensitivity parameter.
+  /// Eight copies of the plant in a SIMD batch, each with another perturbation.
   struct Copies {
     PlaybackEquations<P8> equations;
-    bool by_state;     ///< perturbation of a state; else of a sensitivity parameter
-    std::size_t pack;  ///< columns that receive their sensitivities
+    bool by_state;     ///< whether states and inputs are perturbed; otherwise sensitivity parameters
+    std::size_t pack;  ///< pack of columns that receives the sensitivities
   };
   /// Derivatives, outputs and one guard in all lanes. Finite differences are taken between two such
   /// evaluations, not from the stored trajectory, so that a perturbation without effect gives a sensitivity

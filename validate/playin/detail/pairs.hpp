@@ -25,8 +25,7 @@ inline constexpr Pair kRoughSteps{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
 
 /// Returns the length of the next step after an attempt of length h [s]. `error`: error of the attempt
 /// relative to the tolerance; `power`: this error raised to Pair::exponent. A step that ended early at a
-/// target time
-/// (`reaches`) does not shorten `longest`, the length planned before the attempt.
+/// target time (`reaches`) does not shorten `longest`, the length planned before the attempt.
 inline double next_step(double longest, double h, double error, double power, bool reaches) {
   const double factor = std::isfinite(error) ? std::clamp(0.9 * power, 0.2, 5.0) : 0.2;
   return reaches && error <= 1 ? std::max(longest, h * factor) : h * factor;

@@ -221,7 +221,7 @@ VoltageCurve power_curve(const record::Record& record, std::vector<Switching> sw
     power.V.push_back(std::hypot(record.P[k], record.Q[k]));
     power.theta.push_back(std::atan2(record.Q[k], record.P[k]));
   }
-  for (auto& s : switchings) s.has_before = s.has_after = false;  // known one-sided values are voltages
+  for (auto& s : switchings) s.has_before = s.has_after = false;  // they are known for the voltage only
   return {power, std::move(switchings)};
 }
 
