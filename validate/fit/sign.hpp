@@ -7,8 +7,8 @@
 namespace swingbank::validate::fit {
 
 /// Returns whether a fit may move the parameter through zero. Its range must include negative values, and its
-/// upper limit must not exceed ten times the default value, as for an exciter's KE (-1 to 2, default 1). A
-/// gain whose range spans decades keeps its sign.
+/// upper limit must not exceed ten times the default value. An example is an exciter's KE (-1 to 2, default
+/// 1). A gain whose range spans decades keeps its sign.
 inline bool may_change_sign(const sim::Parameter& p) {
   constexpr double kDecade = 10;
   return p.low < 0 && p.high > 0 && p.high <= kDecade * std::abs(p.default_value);

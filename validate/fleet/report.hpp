@@ -16,9 +16,8 @@ namespace swingbank::validate::fleet {
 /// largest error of the submitted model [% of MVA], then by the normalised RMS of the refitted one, then by
 /// name.
 void sort_worst_first(std::vector<FleetRow>& rows);
-/// Returns the table: plant, verdict, missing effect, side, largest error of the submitted model and its
-/// place, fitness for purpose, normalised RMS (refitted and held out), and bound of the probability under
-/// noise.
+/// Returns the table of all plants: verdict, missing effect, largest error and fitness of the submitted
+/// model, normalised RMS (refitted and held out), and bound of the probability under noise.
 report::Table fleet_table(const std::vector<FleetRow>& rows);
 /// Returns for example "3 plants: 0 unexplained, 1 with a missing effect, 0 adequate after refit, 1 failed, 1
 /// adequate."

@@ -42,16 +42,16 @@ struct RecordContents {
 };
 
 /// Returns every hypothesis that the library allows for the plant; the hypotheses refer to the library's
-/// effects. Excludes effects whose output no block reads (a stabiliser without an exciter), and effects that
-/// act at given times, because these are specific to one event. For the record of a component, only effects
-/// of this component are returned.
+/// effects. Excludes effects whose output no block reads (a stabiliser without an exciter). Also excludes
+/// effects that act at given times, because these are specific to one event. For the record of a component,
+/// only effects of this component are returned.
 std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
                                        const sim::library::EffectLibrary& library,
                                        const RecordContents& recorded = {});
 /// Returns the replacements of every control in a slot for one effect by every other effect of that slot.
 std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
                                          const sim::library::EffectLibrary& library);
-/// Returns extensions of `h` that also free one group of the added effect's parameters that are at null
+/// Returns extensions of `h` that also free a group of the added effect's parameters. The group is at null
 /// values by default, such as a rate feedback KF = 0. There is one extension for each group ("EXST1 with KF")
 /// and, if the group may have either sign, one for each sign. A parameter that acts only with the group (TF)
 /// has the same wide prior as the group. `fitted` is the plant of a fit of `h`: further start values are its

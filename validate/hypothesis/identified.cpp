@@ -61,8 +61,8 @@ class Identifying {
   /// side.
   using Reduced = Polish::Reduced;
 
-  /// Prepares the reduced plants. If the base model nearly fits, it is linearised about its fit, and a side
-  /// is skipped if its free input explains no more than noise. Otherwise the inputs are inferred.
+  /// Prepares the reduced plants. If the base model nearly fits, it is linearised about its fit. A side is
+  /// then skipped if its free input explains no more than noise. Otherwise the inputs are inferred.
   void begin() {
     if (base_model_.fit.reduced_chi2() >= thresholds::noise.measurable) return infer();
     std::vector<event::EventState> states;
@@ -105,8 +105,8 @@ class Identifying {
         [&](int done) { report_progress(event::Phase::missing_input, "", done, kInputs.size()); },
         base_model_.threads);
     if (found[2]->criterion < std::min(found[0]->criterion, found[1]->criterion)) return reduce(*found[2]);
-    // The better input; also the other one, if its reduction of chi2 is less by at most evidence.within_reach
-    // or exceeds the share search.fair of the better one's.
+    // The better input is used. The other one is used too if its reduction of chi2 is similar: less by at
+    // most evidence.within_reach, or more than the share search.fair.
     const auto takes_off = [&](std::size_t i) { return fit::penalised(base_model_.fit) - found[i]->chi2; };
     for (const std::size_t i : {0, 1})
       if (found[i]->criterion < found[1 - i]->criterion ||
@@ -225,8 +225,8 @@ class Identifying {
     fit(some);
   }
   /// Fits the hypotheses whose fits are not complete. The goal of a block depends on `others_` only if the
-  /// block's identified cost is higher than `others_`: a fit may converge slowly at first and must not end
-  /// too early.
+  /// block's identified cost is higher than `others_`. Otherwise a fit that converges slowly at first might
+  /// end too early.
   void fit(std::vector<Identified*> some) {
     std::erase_if(some, [](const Identified* h) { return h->polished; });
     const double least = least_fitted();

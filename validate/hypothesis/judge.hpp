@@ -32,10 +32,10 @@ struct Judgement {
   bool fitted = true;             ///< false: not promising, so `fit` is that of the base model
   /// Excess of chi2 over the best hypothesis, for one that was identified but not fitted.
   double behind = 0;
-  /// For an identified control: the effect of the machine or of an instrument with which its chi2 is lowest,
-  /// and the reduction of chi2 from the best single control. Empty: no reduction is large enough.
+  /// For an identified control: the effect of the machine or of an instrument with which its chi2 is lowest.
+  /// Empty: no reduction of chi2 from the best single control is large enough.
   std::string companion = {};
-  double companion_gain = 0;  ///< reduction of chi2 by the companion
+  double companion_gain = 0;  ///< reduction of chi2 with the companion, from the best single control
   bool accepted = false;      ///< whether all criteria of acceptance are met
   std::string why_not;        ///< reason for rejection; empty if accepted
 };
@@ -60,7 +60,7 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTe
 /// Returns the reason why a held-out event contradicts an effect of this evidence; empty if none does.
 /// `adequate` is Trial::adequate.
 std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate);
-/// Completes the fit of `j` and accepts it if three conditions are met: its evidence is at least
+/// Completes the fit of `j` and accepts it if three conditions are met. Its evidence is at least
 /// Trial::evidence, no held-out event contradicts it (objection()), and the residual counts as noise.
 /// Otherwise sets `why_not`. Has no effect on a hypothesis that was not fitted.
 void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j);

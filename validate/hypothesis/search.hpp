@@ -89,10 +89,10 @@ BaseModel after(const BaseModel& base_model, const Judgement& j);
 /// start values.
 void bring(const BaseModel& base_model, Hypothesis& h);
 
-/// Returns the candidates for replacing a pair's first effect while its second effect stays: all effects of
-/// the first one's slot, and the accepted hypotheses of `alone`. They are not fitted; `fit` contains only
-/// start values and states. Those of the second effect are from the pair's fit. All others are from the
-/// candidate's fit in `alone` or, without one, from the pair's fit.
+/// Returns the candidates for replacing a pair's first effect while its second effect stays. These are all
+/// effects of the first one's slot, and the accepted hypotheses of `alone`. They are not fitted; `fit`
+/// contains only start values and states. Those of the second effect are from the pair's fit. All others are
+/// from the candidate's fit in `alone` or, without one, from the pair's fit.
 std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& pair,
                                  const std::vector<Judgement>& alone);
 /// Fits a candidate of exchanges() or crossed() from its start. Does nothing if the candidate has no start.

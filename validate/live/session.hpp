@@ -1,6 +1,6 @@
 #pragma once
-// Session of the live page: the steps from the submitted model to the completed one, each compared with all
-// records, and playback of changed parameter values while a slider moves.
+// Session of the live page: the steps from the submitted model to the completed one, and playback while a
+// slider moves. Each step is compared with all records.
 #include <map>
 #include <memory>
 #include <mutex>

@@ -275,8 +275,8 @@ class Solver {
     look_at_guards(trial_, guards_at_end_);
     return (guards_at_end_[g] - guards_[g]) / T(kRateOver);
   }
-  /// Returns whether the step is so short, and its error so small, that only a corner of the equations (a
-  /// state that reaches its limit) can be the cause.
+  /// Returns whether the error can only be due to a corner of the equations (a state that reaches its limit),
+  /// because the step is very short and the error small.
   [[nodiscard]] bool crosses_corner(double h, double error) const {
     return h < kShortestStep && error * run_.tolerance < kCornerError;
   }
@@ -302,8 +302,8 @@ class Solver {
     (stage<pair, Before + 1>(h), ...);
     return scaled_error<pair>(h);
   }
-  /// Returns the sum of the first stages' derivatives, weighted by a row of the pair (-1: by the error
-  /// weights), for one number: a state or one of its sensitivities.
+  /// Returns the sum of the derivatives of the stages up to `last`, weighted by a row of the pair (-1: by the
+  /// error weights). `number` is the index of a state or of one of its sensitivities.
   template <const Pair& pair, int row, int last>
   double weighted(std::size_t number) const {
     constexpr double weight = row < 0 ? pair.error[last] : pair.a[row < 0 ? 0 : row][row < 0 ? 0 : last];

@@ -1,8 +1,8 @@
 #pragma once
 // Simulation of one plant with a prescribed terminal voltage (playback). No network model is needed, because
 // the voltage contains the network's effect. The same equations run on doubles for the response, and on dual
-// numbers for its sensitivities to parameters, switching times, initial state, and unmodelled torque or field
-// voltage.
+// numbers for its sensitivities. These are sensitivities to parameters, switching times, initial state, and
+// unmodelled torque or field voltage.
 #include <Eigen/Dense>
 #include <memory>
 #include <span>

@@ -11,7 +11,7 @@ namespace swingbank::validate::plant {
 namespace {
 
 /// Typical values of large machines on their own base (Kundur 1994, tables 3.2 and 4.2): medians of inertia h
-/// [s] and reactance x [pu], and bounds of their product [s pu], which does not depend on the base.
+/// [s] and reactance x [pu], and bounds of their product [s pu]. The product does not depend on the base.
 struct Typical {
   double h, x, least, most;
 };

@@ -268,8 +268,8 @@ class LinearSensitivities {
     equations.of_plant().guard(equations.c.data(), x_.data(), equations.signals, guards_.data());
     to.guard = guards_[static_cast<std::size_t>(guard)];
   }
-  /// Sets the columns of B and D of the hat functions that are not zero at t: effect of the input times the
-  /// value of the hat function.
+  /// Sets the columns of B and D of the hat functions that are not zero at t. A column is the effect of the
+  /// input times the value of the hat function.
   void raise_hats(double t) {
     while (begun_ < begins_.size() && begins_[begun_].first <= t)
       active_ = std::max(active_, begins_[begun_++].second);

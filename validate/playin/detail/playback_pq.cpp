@@ -78,7 +78,7 @@ class PowerPlayback {
     return std::conj((w + b) / e);
   }
   /// Solves V conj(I) = S at the grid side for a machine whose current is a nonlinear function of its
-  /// voltage: Newton's method in the terminal voltage, from the last solution, with finite differences.
+  /// voltage. Newton's method with finite differences finds the terminal voltage, from the last solution.
   std::optional<Complex> by_newton(const double* x, Complex s, sim::Signals<double>& signals) {
     const auto grid_side = [&](Complex v) {
       signals.Vr = v.real();
