@@ -16,8 +16,8 @@ constexpr double kMedianOfSquare = 0.4549;
 /// Variance of x[k-1] - 2 x[k] + x[k+1], relative to that of white x.
 constexpr double kSecondDifference = 6;
 /// The standard deviation of log(mean square second difference / variance) of n white samples is
-/// sqrt(kOfRatio / n). In kOfRatio, the variance contributes 2, the second differences 3.89, and their
-/// covariance -2 * 2.
+/// sqrt(kOfRatio / n). kOfRatio = 2 + 3.888 - 2 * 2 sums the contributions of the variance, of the second
+/// differences, and of their covariance.
 constexpr double kOfRatio = 2 * 0.944;
 
 /// Residual statistics of a channel over all events.

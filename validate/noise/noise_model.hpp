@@ -1,6 +1,6 @@
 #pragma once
-// Noise model of a set of events, in whose units residuals are measured. Each estimation returns a distinct
-// model. Two costs are comparable only if they use the same model.
+// Noise model of a set of events, which defines the unit of residuals and costs. Each estimation returns a
+// distinct model. Two costs are comparable only if they use the same model.
 #include <Eigen/Dense>
 #include <memory>
 #include <utility>
