@@ -92,7 +92,7 @@ void write(const Arguments& a, const plant::PlantModel& before, plant::PlantMode
       fmt::format("{} of {:g} MVA; the submitted and the completed model, compared with the records.",
                   plant::subject(before), before.plant.mva);
   page.played = played;
-  result["standard_values"] = before.defaults;
+  result["default_values"] = before.defaults;
   result["records"] = a.metadata;
   const std::string errors = compare::error_text(played, page.use);
   const std::string usable =

@@ -141,7 +141,7 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const check::Reco
   a.fitted->chi2 = f.after;
   a.fitted->values = 1;
   nlohmann::json result = calibrate::curve_fit_json(f, truth);
-  result["standard_values"] = model.defaults;
+  result["default_values"] = model.defaults;
   return write(a, model, set, play_both(a, model, f.model, set.records),
                {.model = f.model,
                 .adequate = f.adequate,
@@ -223,7 +223,7 @@ int run(Arguments& a, plant::PlantModel& model) {
   if (both) curve = fit_curves(a, model, records);
   const auto played = play_both(a, model, c.model, records);
   nlohmann::json result = calibrate::calibration_json(c);
-  result["standard_values"] = model.defaults;
+  result["default_values"] = model.defaults;
   std::vector<calibrate::Way> ways = {calibrate::way_of_model(c)};
   if (curve) {
     plant::write_plant_file(a.of.results().file(kCurveFit), event::whole_model(curve->model),

@@ -21,7 +21,7 @@ cmp "$work/printed.json" "$work/added/add.json" || fail "--json prints something
 python3 - "$work/added/add.json" <<'PYTHON'
 import json, sys
 r = json.load(open(sys.argv[1]))
-assert r["effect"] == "SEXS" and r["earns_its_place"] and r["adequate"], r["sentence"]
+assert r["effect"] == "SEXS" and r["accepted"] and r["adequate"], r["sentence"]
 seen, unseen = r["events"]
 assert (seen["record"], seen["seen"], unseen["seen"]) == ("avr_ev1.csv", True, False)
 assert [e["use"] for e in r["events"]] == ["fit", "verification"]
@@ -30,7 +30,7 @@ assert "exciter.model" in r["nameplate"]["missing"] and "governor.model" not in 
 u = r["usability"]
 assert u["usable"] and "SEXS" in u["step"] and len(u["operating_points"]) == 2, u
 assert all(0 < o["oscillation"]["damping_ratio"] < 1 and 0.1 < o["oscillation"]["frequency_hz"] < 5 for o in u["operating_points"]), u
-assert unseen["misfit_before"] > 100 * unseen["misfit_after"]
+assert unseen["reduced_chi2_before"] > 100 * unseen["reduced_chi2_after"]
 assert [e["unit"] for e in r["errors"] if e["model"] == "submitted" and e["record"] == "avr_ev2.csv"] == ["MW", "Mvar"]
 PYTHON
 # the errors of the submitted model equal those of compare
@@ -85,9 +85,9 @@ python3 - "$work/both/calibrate.json" <<'PYTHON'
 import json, sys
 r = json.load(open(sys.argv[1]))
 model, curve, ours = r["side_by_side"]
-assert [w["way"] for w in r["side_by_side"]] == ["model", "curve fit", "calibrate"]
+assert [w["method"] for w in r["side_by_side"]] == ["model", "curve fit", "calibrate"]
 assert model["truth"]["rms_relative"] == 0 and curve["truth"]["mse_raw_units"] > ours["truth"]["mse_raw_units"] > 0, curve["truth"]
-assert [e["seen"] for e in curve["events"]] == [True, False] and r["curve_fit"]["format"] == "swingbank-curve-fit-3"
+assert [e["seen"] for e in curve["events"]] == [True, False] and r["curve_fit"]["format"] == "swingbank-curve-fit-4"
 PYTHON
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" --method curve-fit --json --out "$work/curves" >"$work/printed.json" || (($? == 3))
 cmp "$work/printed.json" "$work/curves/calibrate.json" || fail "--json prints something else than it writes"

@@ -106,9 +106,9 @@ import json, sys
 load = lambda name: json.load(open(f"{sys.argv[1]}/{name}"))
 asked, given, seen = load("printed.json"), load("started.json"), load("seen.json")
 assert sorted(s["name"] for s in asked["started"]) == ["closed form", "model", "network"], asked["started"]
-assert all(s["misfit_after"] <= s["misfit_before"] for s in asked["started"]), asked["started"]
+assert all(s["reduced_chi2_after"] <= s["reduced_chi2_before"] for s in asked["started"]), asked["started"]
 model, network, fit = asked["side_by_side"]
-assert [w["way"] for w in asked["side_by_side"]] == ["model", "network", "calibrate"]
+assert [w["method"] for w in asked["side_by_side"]] == ["model", "network", "calibrate"]
 said = {p["effect"] + "." + p["name"]: p["estimate"] for p in seen["parameters"]}
 for p in network["parameters"]:
     assert p["value"] == said[p["parameter"]] and p["low_95"] < p["value"] < p["high_95"], p

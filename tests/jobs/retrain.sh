@@ -12,9 +12,9 @@ done
 python3 - "$work/given" <<'PYTHON'
 import json, sys
 r = json.load(open(f"{sys.argv[1]}/retrain.json"))
-assert r["format"] == "swingbank-retrain-1" and r["reference"] == "fitted", r
-shared = [p for p in r["parameters"] if not p["of_the_effect"]]
-own = [p for p in r["parameters"] if p["of_the_effect"]]
+assert r["format"] == "swingbank-retrain-2" and r["reference"] == "fitted", r
+shared = [p for p in r["parameters"] if not p["added"]]
+own = [p for p in r["parameters"] if p["added"]]
 assert len(shared) == 10 and {"SEXS.K", "SEXS.TB"} <= {p["parameter"] for p in own}, r["parameters"]
 assert all("without" not in p for p in own)
 # D is not fitted (zero in the model), so its estimate has no reference

@@ -39,7 +39,7 @@ class Fits(unittest.TestCase):
                                    progress=lambda phase, *_: phases.add(phase))
         self.assert_same_parameters(got, said)
         self.assertEqual(got.to_dict()["verdict"], said["verdict"])
-        self.assert_close(got.after, said["misfit_after"])
+        self.assert_close(got.after, said["reduced_chi2_after"])
         self.assertFalse(got.adequate)
         self.assertIn("fit of the parameters", phases)
         self.assertEqual(got.correlation.shape, (len(got.parameters),) * 2)

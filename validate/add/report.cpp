@@ -67,7 +67,7 @@ json parameter_json(const fit::FittedParameter& p, bool own) {
           {"standard_error", p.error},
           {"low_95", p.low},
           {"high_95", p.high},
-          {"decided_by_records", p.decided},
+          {"variance_reduction", p.decided},
           {"at_bound", p.at_bound}};
 }
 
@@ -100,13 +100,13 @@ json addition_json(const Addition& a) {
             {"effects", json::array()},
             {"side", hypothesis::side_name(a.hypothesis.side)},
             {"sentence", a.sentence},
-            {"earns_its_place", a.earns},
+            {"accepted", a.earns},
             {"adequate", a.adequate},
             {"adequacy", thresholds::ruling_json(a.ruling)},
             {"evidence_needed", thresholds::addition.strong.value},
             {"evidence", a.evidence},
-            {"misfit_refitted_without", a.without.reduced_chi2()},
-            {"misfit_with", a.with.reduced_chi2()},
+            {"reduced_chi2_refitted_without", a.without.reduced_chi2()},
+            {"reduced_chi2_with", a.with.reduced_chi2()},
             {"seconds", a.seconds},
             {"events", json::array()},
             {"parameters", json::array()}};
@@ -114,7 +114,7 @@ json addition_json(const Addition& a) {
     j["effects"].push_back({{"effect", e.name}, {"what", e.what}, {"evidence", e.evidence}});
   for (const auto& e : a.events) {
     json event = calibrate::event_json(e.score);
-    event["misfit_refitted_without"] = e.refitted;
+    event["reduced_chi2_refitted_without"] = e.refitted;
     j["events"].push_back(event);
   }
   for (std::size_t i = 0; i < a.parameters.size(); ++i)

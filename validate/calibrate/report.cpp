@@ -67,11 +67,11 @@ json parameter_json(const Calibration& c, std::size_t i) {
             {"standard_error_white_noise", p.curvature_error},
             {"low_95", p.fit.low},
             {"high_95", p.fit.high},
-            {"decided_by_records", p.fit.decided},
+            {"variance_reduction", p.fit.decided},
             {"voltage_noise_correction", p.shift},
             {"at_bound", p.fit.at_bound},
-            {"beyond_belief", strained(p.fit)}};
-  j["would_be_narrowed_by"] =
+            {"outside_prior", strained(p.fit)}};
+  j["most_informative_event"] =
       p.best_candidate < 0 ? json(nullptr)
                            : json{{"event", c.candidates[static_cast<std::size_t>(p.best_candidate)].what},
                                   {"factor", p.narrowed}};
@@ -159,10 +159,10 @@ json event_json(const EventScore& e) {
   return {{"record", e.record},
           {"seen", e.seen},
           {"use", use_name(e)},
-          {"misfit_before", e.before},
-          {"misfit_after", e.after},
-          {"misfit_limit", e.limit},
-          {"misfit_limit_noise", e.limit - e.allowance},
+          {"reduced_chi2_before", e.before},
+          {"reduced_chi2_after", e.after},
+          {"reduced_chi2_limit", e.limit},
+          {"reduced_chi2_limit_noise", e.limit - e.allowance},
           {"adequate", e.adequate()},
           {"noise_correlation", e.colour}};
 }
@@ -171,9 +171,9 @@ json calibration_json(const Calibration& c) {
   json j = {{"verdict", adequacy_name(c.adequacy)},
             {"adequacy", thresholds::ruling_json(c.ruling)},
             {"sentence", c.sentence},
-            {"misfit_before", c.before},
-            {"misfit_after", c.after},
-            {"misfit_limit", c.limit},
+            {"reduced_chi2_before", c.before},
+            {"reduced_chi2_after", c.after},
+            {"reduced_chi2_limit", c.limit},
             {"starts", c.starts},
             {"starts_agreeing", c.agreeing},
             {"started", json::array()},
@@ -183,11 +183,13 @@ json calibration_json(const Calibration& c) {
             {"events", json::array()},
             {"parameters", json::array()},
             {"correlation", json::array()},
-            {"not_told_apart", json::array()},
+            {"unidentified_combinations", json::array()},
             {"events_tried", json::array()}};
   for (const auto& s : c.started)
-    j["started"].push_back(
-        {{"name", s.name}, {"misfit_before", s.before}, {"misfit_after", s.after}, {"agrees", s.agrees}});
+    j["started"].push_back({{"name", s.name},
+                            {"reduced_chi2_before", s.before},
+                            {"reduced_chi2_after", s.after},
+                            {"agrees", s.agrees}});
   for (const auto& e : c.events) j["events"].push_back(event_json(e));
   for (std::size_t i = 0; i < c.parameters.size(); ++i) {
     j["parameters"].push_back(parameter_json(c, i));
@@ -202,7 +204,8 @@ json calibration_json(const Calibration& c) {
       const auto& p = c.parameters[static_cast<std::size_t>(m.parameter)].fit;
       members.push_back({{"parameter", p.full_name()}, {"change", m.change}, {"unit", p.unit}});
     }
-    j["not_told_apart"].push_back({{"members", members}, {"decided_by_records", combination.decided}});
+    j["unidentified_combinations"].push_back(
+        {{"members", members}, {"variance_reduction", combination.decided}});
   }
   for (const auto& candidate : c.candidates)
     j["events_tried"].push_back({{"event", candidate.what}, {"standard_errors", candidate.error}});

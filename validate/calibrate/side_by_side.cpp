@@ -220,7 +220,7 @@ std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
 json beside_json(const std::vector<Way>& ways, const Truth& truth) {
   json all = json::array();
   for (const auto& way : ways) {
-    json j = {{"way", way.name}, {"parameters", json::array()}, {"events", json::array()}};
+    json j = {{"method", way.name}, {"parameters", json::array()}, {"events", json::array()}};
     for (const auto& v : way.values) {
       const auto known = truth.find(v.parameter);
       j["parameters"].push_back({{"parameter", v.parameter},
@@ -231,7 +231,7 @@ json beside_json(const std::vector<Way>& ways, const Truth& truth) {
                                  {"truth", known == truth.end() ? json(nullptr) : json(known->second)}});
     }
     for (const auto& e : way.events)
-      j["events"].push_back({{"record", e.record}, {"seen", e.seen}, {"misfit", e.after}});
+      j["events"].push_back({{"record", e.record}, {"seen", e.seen}, {"reduced_chi2", e.after}});
     if (!truth.empty()) {
       const Distance d = distance(way, truth);
       j["truth"] = {{"parameters", d.parameters},
@@ -266,11 +266,12 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
 }
 
 json curve_fit_json(const CurveFit& f, const Truth& truth) {
-  json j = {{"format", "swingbank-curve-fit-3"}, {"version", SWINGBANK_VERSION}, {"model", f.model.origin},
-            {"model_sha256", f.model.sha256},    {"sentence", f.sentence},       {"misfit_before", f.before},
-            {"misfit_after", f.after},           {"misfit_limit", f.limit},      {"adequate", f.adequate},
-            {"converged", f.converged},          {"iterations", f.iterations},   {"seconds", f.seconds},
-            {"events", json::array()},           {"parameters", json::array()}};
+  json j = {
+      {"format", "swingbank-curve-fit-4"}, {"version", SWINGBANK_VERSION},  {"model", f.model.origin},
+      {"model_sha256", f.model.sha256},    {"sentence", f.sentence},        {"reduced_chi2_before", f.before},
+      {"reduced_chi2_after", f.after},     {"reduced_chi2_limit", f.limit}, {"adequate", f.adequate},
+      {"converged", f.converged},          {"iterations", f.iterations},    {"seconds", f.seconds},
+      {"events", json::array()},           {"parameters", json::array()}};
   for (const auto& e : f.events) j["events"].push_back(event_json(e));
   for (const auto& p : f.parameters) {
     const auto known = truth.find(p.full_name());

@@ -247,7 +247,7 @@ nlohmann::json fitness_json(const Fitness& f) {
                              {"unit", m.unit},
                              {"rms", number(m.measured)},
                              {"error_percent", number(m.error)},
-                             {"made_percent", number(m.share)},
+                             {"regression_percent", number(m.share)},
                              {"limit_percent", m.limit}});
   for (const auto& row : f.rows) {
     nlohmann::json one = errors_json(row.errors);

@@ -160,9 +160,9 @@ std::string json_report(const plant::PlantModel& model, const std::vector<EventC
                       {"fitness", fitness_json(fitness)},
                       {"verdict", adequacy.sentence},
                       {"adequacy", thresholds::ruling_json(adequacy.ruling)},
-                      {"cells", adequacy.bins},
-                      {"cells_exceeding", adequacy.exceeding},
-                      {"cells_telling_nothing", adequacy.vague},
+                      {"bins", adequacy.bins},
+                      {"bins_exceeding", adequacy.exceeding},
+                      {"bins_uninformative", adequacy.vague},
                       {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
                       {"base_mva", model.record_base.mva},
                       {"frequency_hz", model.record_base.frequency}};

@@ -8,7 +8,7 @@
 namespace swingbank::validate::compare {
 
 /// Name and version of the format. The version changes if a key of the schema is removed or changes meaning.
-constexpr const char* kReportFormat = "swingbank-report-1";
+constexpr const char* kReportFormat = "swingbank-report-2";
 
 /// Adds the common part of a command's JSON to its own keys: format, command, software, model, nameplate,
 /// verdicts, usability, errors with units, provenance, and the use of each of `events`. `kind`: the command.

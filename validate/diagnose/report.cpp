@@ -108,7 +108,7 @@ nlohmann::json parameters_json(const fit::Fit& fit) {
                     {"low_95", p.low},
                     {"high_95", p.high},
                     {"at_bound", p.at_bound},
-                    {"told_by_records", p.decided}});
+                    {"variance_reduction", p.decided}});
   return rows;
 }
 
@@ -232,7 +232,7 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
                               const report::Provenance& rows) {
   const ReportFigures figures = report_figures(d);
   nlohmann::json j = {
-      {"format", "swingbank-diagnosis-2"},
+      {"format", "swingbank-diagnosis-3"},
       {"verdict", verdict_name(d.verdict)},
       {"sentence", d.sentence},
       {"adequacy", thresholds::ruling_json(d.ruling)},
@@ -241,7 +241,7 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
       {"effects", d.effects},
       {"equivalent", d.equivalent},
       {"probabilities", probabilities_json(d)},
-      {"would_decide", decision_json(d.would_decide)},
+      {"next_measurement", decision_json(d.would_decide)},
       {"seconds", d.seconds},
       {"model",
        {{"name", model.name}, {"file", model.origin}, {"sha256", model.sha256}, {"mva", model.plant.mva}}}};
@@ -259,7 +259,7 @@ nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d
   j["wrong_parameters"] = wrong ? calibrate::wrong_json(*wrong) : nlohmann::json();
   j["missing_torque"] = input_json(d, d.torque);
   j["missing_field_voltage"] = input_json(d, d.field);
-  j["laws"] = user_models_json(d);
+  j["user_defined_models"] = user_models_json(d);
   j["hypotheses"] = nlohmann::json::array();
   for (const auto& h : d.ranked) j["hypotheses"].push_back(hypothesis_json(h));
   j["events"] = nlohmann::json::array();

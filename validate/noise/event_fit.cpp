@@ -4,6 +4,7 @@ namespace swingbank::validate::noise {
 
 void compare(const WhitenedEvents& events, std::size_t which, const playin::Response& response, EventFit& f) {
   const event::FitEvent& event = events[which];
+  f.model.clear();
   for (const playin::Output o : event.channels) f.model.push_back(response.of(o));
   RowMatrix e = event.collected(response.value, true);
   events.noise(which).whiten(e);

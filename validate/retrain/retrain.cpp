@@ -203,7 +203,7 @@ std::string terminal_report(const Retrained& r) {
 }
 
 json retrained_json(const Retrained& r) {
-  json j = {{"format", "swingbank-retrain-1"},
+  json j = {{"format", "swingbank-retrain-2"},
             {"sentence", r.sentence},
             {"reference", r.truth ? "truth" : "fitted"},
             {"parameter_error", {{"without", r.error[0]}, {"with", r.error[1]}, {"middle", r.middle}}},
@@ -212,8 +212,8 @@ json retrained_json(const Retrained& r) {
             {"parameters", json::array()},
             {"events", json::array()}};
   for (const auto& p : r.parameters) {
-    json one = {{"parameter", p.name},      {"unit", p.unit},         {"reference", p.reference},
-                {"deviation", p.deviation}, {"of_the_effect", p.own}, {"middle_error", p.middle}};
+    json one = {{"parameter", p.name},      {"unit", p.unit}, {"reference", p.reference},
+                {"deviation", p.deviation}, {"added", p.own}, {"middle_error", p.middle}};
     for (std::size_t side = p.own ? 1 : 0; side < 2; ++side)
       one[kSides[side]] = {{"estimate", p.estimate[side]}, {"error", p.error[side]}};
     j["parameters"].push_back(one);
@@ -223,7 +223,7 @@ json retrained_json(const Retrained& r) {
     for (std::size_t side = 0; side < 2; ++side)
       one[kSides[side]] = {{"parameter_error", e.parameter_error[side]},
                            {"rms_mw_mvar", e.rms[side]},
-                           {"misfit", e.reduced_chi2[side]}};
+                           {"reduced_chi2", e.reduced_chi2[side]}};
     j["events"].push_back(one);
   }
   return j;

@@ -218,19 +218,19 @@ std::string system_text(const SystemCase& s, const SystemComparison& c) {
 }
 
 std::string system_json(const SystemCase& s, const SystemComparison& c, const report::Provenance& rows) {
-  json j = {{"format", "swingbank-system-compare-2"},
+  json j = {{"format", "swingbank-system-compare-3"},
             {"name", s.name},
             {"adequate", c.adequacy.adequate},
             {"verdict", c.adequacy.sentence},
             {"adequacy", thresholds::ruling_json(c.adequacy.ruling)},
-            {"culprit", c.culprit},
-            {"cells", c.adequacy.bins},
-            {"cells_exceeding", c.adequacy.exceeding},
+            {"likely_cause", c.culprit},
+            {"bins", c.adequacy.bins},
+            {"bins_exceeding", c.adequacy.exceeding},
             {"false_alarm_probability", thresholds::adequacy.false_alarm.value},
             {"event", event_lines(s.texts)},
-            {"instants_s", c.switching_times},
-            {"instants_found", s.switching_times_from_records},
-            {"instants_uncertainty_s", c.uncertainty},
+            {"switching_times_s", c.switching_times},
+            {"switching_times_from_records", s.switching_times_from_records},
+            {"switching_times_uncertainty_s", c.uncertainty},
             {"outcome", sim::outcome_name(c.outcome)},
             {"reference",
              s.reference < 0 ? json(nullptr) : json(s.terminals[static_cast<std::size_t>(s.reference)].name)},
@@ -308,7 +308,8 @@ report::Provenance system_provenance(const SystemCase& s, const std::string& com
       {"network", hashed(s.raw, s.raw_sha256)},
       {"dynamics", hashed(s.dyr, s.dyr_sha256)},
       {"integrator", fmt::format("IDA on the unreduced grid, relative tolerance {:g}", s.tolerance)}};
-  for (const auto& [file, sha256] : s.user_models) rows.emplace_back("law", hashed(file, sha256));
+  for (const auto& [file, sha256] : s.user_models)
+    rows.emplace_back("user-defined model", hashed(file, sha256));
   for (const auto& t : s.terminals)
     rows.emplace_back("record of " + t.name, hashed(t.record.name, t.record.sha256));
   return rows;

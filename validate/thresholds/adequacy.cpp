@@ -9,11 +9,10 @@ namespace swingbank::validate::thresholds {
 
 const CriterionRecord& criterion_record(Criterion criterion) {
   static constexpr std::array<CriterionRecord, 7> records = {{
-      {"cells",
-       "bins of the error maps above the noise limit, or whose noise limit exceeds the nominal value",
-       "cells", "at"},
+      {"bins", "bins of the error maps above the noise limit, or whose noise limit exceeds the nominal value",
+       "bins", "at"},
       {"events", "largest reduced chi-square of an event, parameters refitted", "chi2 per value", "up to"},
-      {"misfit", "reduced chi-square of all events, parameters refitted", "chi2 per value", "up to"},
+      {"reduced_chi2", "reduced chi-square of all events, parameters refitted", "chi2 per value", "up to"},
       {"slow", "slow drift of the residual, parameters refitted", "standard deviations", "below"},
       {"line", "chi2 of a steady oscillation of one frequency in all events, above its penalty", "chi2",
        "up to"},

@@ -12,7 +12,8 @@ namespace swingbank::validate::thresholds {
 std::vector<Threshold> all_thresholds();
 /// [{"name", "value", "unit", "why"}]
 nlohmann::json thresholds_json();
-/// Returns {"criterion", "asks", "adequate", "value", "limit", "unit", "where"}; value null if not finite.
+/// Returns {"criterion", "quantity", "adequate", "value", "limit", "unit", "where"}; value null if not
+/// finite.
 nlohmann::json ruling_json(const Ruling& ruling);
 
 }  // namespace swingbank::validate::thresholds

@@ -26,10 +26,10 @@ nlohmann::json basis_of(const validate::diagnose::Diagnosis& d) {
   const auto input = [&](const validate::reduced::FreeInput& m) {
     return nlohmann::json{{"evidence", m.evidence},
                           {"chi2", validate::fit::gain(d.base, m.fit, validate::fit::data_cost)},
-                          {"misfit", m.reduced_chi2()}};
+                          {"reduced_chi2", m.reduced_chi2()}};
   };
   nlohmann::json j = {{"values", d.base.values},
-                      {"misfit", d.base.reduced_chi2()},
+                      {"reduced_chi2", d.base.reduced_chi2()},
                       {"slow", validate::noise::slow_remainder(d.base.events, d.events)},
                       {"line", validate::noise::strongest_line(d.base.events, d.events).explains},
                       {"torque", input(d.torque)},
@@ -41,7 +41,7 @@ nlohmann::json basis_of(const validate::diagnose::Diagnosis& d) {
                           {"slot", h.hypothesis.slot},
                           {"evidence", h.gain},
                           {"chi2", validate::fit::gain(d.base, h.fit, validate::fit::data_cost)},
-                          {"misfit", h.fit.reduced_chi2()},
+                          {"reduced_chi2", h.fit.reduced_chi2()},
                           {"free", h.hypothesis.free.size()},
                           {"accepted", h.accepted},
                           {"why_not", h.why_not}};

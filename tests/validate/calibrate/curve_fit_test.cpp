@@ -112,7 +112,7 @@ TEST(CurveFit, IsLessAccurateThanCalibrateOnTheExample) {
   const report::Table events = events_beside(ways);
   for (const auto& row : events.rows) EXPECT_EQ(row.size(), events.header.size());
   EXPECT_THAT(beside_report(ways, known), HasSubstr("intervals contain the true value"));
-  EXPECT_EQ(beside_json(ways, known)[1]["way"], "curve fit");
+  EXPECT_EQ(beside_json(ways, known)[1]["method"], "curve fit");
   const auto leaves_no_trace = std::ranges::find(f.parameters, "EMIN", &fit::FittedParameter::name);
   EXPECT_FALSE(std::isfinite(leaves_no_trace->error));
   EXPECT_EQ(leaves_no_trace->value, -4.0);

@@ -247,7 +247,7 @@ TEST(DiagnosisReportTest, PageShowsTheUserModelsOfTheJson) {
   EXPECT_EQ(rows[0][5], "accepted");
   EXPECT_EQ(rows[1][4], "–");
   EXPECT_EQ(rows[1][5], "it worsens <ev3>");
-  const auto written = diagnosis_json(example().model, d, {})["laws"];
+  const auto written = diagnosis_json(example().model, d, {})["user_defined_models"];
   EXPECT_EQ(written["input"], "field_voltage");
   EXPECT_EQ(written["found"], "LAW1");
   EXPECT_EQ(written["fitted"][1]["why_not"], "it worsens <ev3>");
@@ -258,11 +258,11 @@ TEST(DiagnosisReportTest, ReportsThatNoUserDefinedModelFits) {
   const std::string html = diagnosis_html(example().model, d, {});
   EXPECT_THAT(html, HasSubstr("No user-defined model predicts held-out events; none is accepted."));
   EXPECT_THAT(html, testing::Not(HasSubstr("Found:")));
-  EXPECT_TRUE(diagnosis_json(example().model, d, {})["laws"]["found"].is_null());
+  EXPECT_TRUE(diagnosis_json(example().model, d, {})["user_defined_models"]["found"].is_null());
 }
 TEST(DiagnosisReportTest, PageOmitsUserModels_WithoutASearch) {
   EXPECT_THAT(page(), testing::Not(HasSubstr("User-defined model")));
-  EXPECT_TRUE(figures()["laws"].is_null());
+  EXPECT_TRUE(figures()["user_defined_models"].is_null());
 }
 
 TEST(DiagnosisPageTest, RendersInABrowser) {

@@ -30,7 +30,7 @@ void add_scatters(const Diagnosis& d, report::Document& page) {
                          std::string(user_model_search::kUserModelSignals[signal].expression) + " [pu]",
                          input_name(s) + " [pu]",
                          {{"inferred", Ink::inferred, {}}}};
-    if (drawn(d)) plot.groups.push_back({"law", Ink::fitted, {}});
+    if (drawn(d)) plot.groups.push_back({"user-defined model", Ink::fitted, {}});
     for (std::size_t e = 0; e < s.traces.size(); ++e)
       for (std::size_t k = 0; k < x[e].size(); ++k) {
         plot.groups[0].points.emplace_back(x[e][k], s.traces[e].input[k]);
@@ -46,7 +46,8 @@ void add_time_series(const Diagnosis& d, report::Document& page) {
     const std::string& name = d.events[e].record.name;
     report::Curves c{name + ": " + input_name(s), "pu", name + " user-defined model", s.traces[e].knots};
     c.series.push_back({"inferred", Ink::inferred, s.traces[e].input});
-    if (drawn(d)) c.series.push_back({"law", Ink::fitted, drawn(d)->user_model.time_series[e]});
+    if (drawn(d))
+      c.series.push_back({"user-defined model", Ink::fitted, drawn(d)->user_model.time_series[e]});
     page.add(std::move(c));
   }
 }
@@ -67,7 +68,7 @@ nlohmann::json finding_json(const user_model_search::UserModelFinding& f) {
                                {"evidence", j.gain},
                                {"normalised_rms", std::sqrt(j.fit.reduced_chi2())},
                                {"explained_of_input", f.user_model.explained},
-                               {"law_file", f.toml},
+                               {"file", f.toml},
                                {"parameters", nlohmann::json::array()},
                                {"unseen", nlohmann::json::array()}};
   for (const auto& p : j.fit.parameters)
