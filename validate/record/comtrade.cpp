@@ -15,7 +15,7 @@
 namespace swingbank::validate::record {
 namespace {
 
-/// Returns an integer or float of the file, little-endian as in the standard.
+/// Returns the integer or float at byte `at`. The standard prescribes little-endian order.
 template <class T>
 T little(std::string_view bytes, std::size_t at) {
   std::uint32_t bits = 0;
@@ -64,7 +64,7 @@ class Data {
   [[nodiscard]] std::size_t sample_size(std::size_t width) const {
     return 8 + width * out_.channels.size() + 2 * ((static_cast<std::size_t>(c_.status) + 15) / 16);
   }
-  /// Returns whether samples of that size are numbered consecutively from the first.
+  /// Returns whether the first 16 samples are numbered consecutively, if a sample has `size` bytes.
   [[nodiscard]] bool counts_up(std::size_t size) const {
     constexpr std::size_t kLooked = 16;
     const std::size_t n = std::min(kLooked, dat_.size() / size);
@@ -127,7 +127,7 @@ class Data {
     }
   }
 
-  /// Parses a value; missing if empty, or 99999 before 2013 (8.4).
+  /// Parses a value. An empty field is a missing value, and so is 99999 before revision 2013 (clause 8.4).
   double text_value(const ComtradeChannel& channel, std::string_view text, std::size_t sample) {
     const auto v = comtrade_number(text);
     if (!v && !text.empty())
@@ -153,7 +153,7 @@ class Data {
       note_cut(fmt::format("{}, byte {}", out_.file, n * size));
   }
 
-  /// Returns whether all announced samples have been read, and counts those beyond them.
+  /// Returns whether all announced samples have been read. Counts the surplus ones.
   bool is_surplus() {
     if (out_.places.size() < static_cast<std::size_t>(c_.samples)) return false;
     ++surplus_;
@@ -163,7 +163,8 @@ class Data {
     out_.notes.push_back(fmt::format("The last sample ({}) is truncated and was ignored.", where));
   }
 
-  /// Returns a value; missing if 0x8000 or 0x80000000 (8.6), or a FLOAT32 that is not finite.
+  /// Returns the value at byte `at`; NaN if it is missing. The marks of a missing value are 0x8000 and
+  /// 0x80000000 (clause 8.6), a FLOAT32 that is not finite, and the largest FLOAT32.
   [[nodiscard]] double binary_value(std::size_t at) const {
     if (out_.kind == "BINARY") {
       const auto v = little<std::int16_t>(dat_, at);
@@ -197,7 +198,7 @@ class Data {
     c.values.push_back((c.a * x + c.b) * ratio);
   }
 
-  /// Unwraps the stamps: unsigned four-byte numbers that overflow in a recorder that runs for long.
+  /// Unwraps the time stamps. They are unsigned four-byte numbers, which overflow in a long record.
   void unwrap_stamps() {
     constexpr double kWrap = 4294967296.0;
     double turns = 0, before = kNoValue;
@@ -229,7 +230,7 @@ class Data {
     }
   }
 
-  /// Computes times from the rates; each interval has the step of its sample's stretch.
+  /// Computes times from the rates. The interval before a sample is 1/rate of the stretch that contains it.
   void rated_times(std::size_t n) {
     std::size_t first = 0;
     for (std::size_t i = 0; i < c_.rates.size(); ++i) {
@@ -245,13 +246,13 @@ class Data {
         out_.stretches.push_back({rate, first, end});
       first = end;
     }
-    // A single rate avoids rounding errors of sums.
+    // With a single rate, k/rate avoids the rounding error of the sum above.
     if (out_.stretches.size() == 1)
       for (std::size_t k = 0; k < n; ++k) out_.t[k] = static_cast<double>(k) / out_.stretches[0].rate;
   }
 
-  /// Compares stamps with the rate, which is authoritative (8.3); a difference is noted. A ratio of about ten
-  /// or more means that one of them is in another, unknown unit, and becomes a problem.
+  /// Compares the stamps with the rate, which has priority (clause 8.3), and notes a difference above 1 %. A
+  /// ratio above 9 becomes a problem: one of them is then in another, unknown unit.
   void compare_stamps() {
     if (stamps_.size() < 2) return;
     const double stamped = (stamps_.back() - stamps_.front()) * c_.stamp, rated = out_.t.back();
@@ -284,7 +285,7 @@ class Data {
   std::size_t surplus_ = 0;  ///< samples beyond the announced number
 };
 
-/// Returns the section of a .cff whose heading contains `word`; `heading` becomes that line.
+/// Returns the section of a .cff whose heading contains `word`, and sets `heading` to that line.
 std::string_view section(std::string_view cff, std::string_view word, std::string& heading) {
   constexpr std::string_view mark = "--- file type:";
   for (auto at = cff.find(mark); at != std::string_view::npos; at = cff.find(mark, at + 1)) {
@@ -293,7 +294,7 @@ std::string_view section(std::string_view cff, std::string_view word, std::strin
     if (heading.find(word) == std::string::npos) continue;
     if (heading.find("BINARY") == std::string::npos && heading.find("FLOAT") == std::string::npos)
       return rest.substr(0, rest.find(mark));
-    // "DAT BINARY: 1234 ---": the number of bytes.
+    // The heading of binary data contains the number of bytes: "DAT BINARY: 1234 ---".
     const auto colon = heading.rfind(':');
     std::string_view digits = std::string_view(heading).substr(colon + 1);
     digits = comtrade_fields(digits.substr(0, digits.find("---")))[0];
@@ -316,8 +317,8 @@ std::string Comtrade::where(std::size_t first, std::size_t last) const {
 }
 
 namespace {
-/// Resamples waveforms of a recorder whose rate follows the grid's frequency to a uniform grid, by cubic
-/// interpolation. Returns false if the rates differ by more.
+/// Resamples the waveforms of a recorder whose rate follows the grid frequency. They are interpolated at
+/// uniform times by cubic polynomials. Returns false if the rates differ by more than 2 %.
 bool put_onto_mean_rate(Comtrade& c) {
   constexpr double kDrawn = 0.02;  // relative; no grid's frequency deviates further
   const auto [low, high] = std::ranges::minmax(c.stretches, {}, &ComtradeStretch::rate);
@@ -326,7 +327,7 @@ bool put_onto_mean_rate(Comtrade& c) {
   const double rate = static_cast<double>(n - 1) / (c.t.back() - c.t.front());
   std::vector<std::vector<double>> even(c.channels.size(), std::vector<double>(n));
   std::vector<double> t(n);
-  std::size_t at = 0;  // the preceding sample
+  std::size_t at = 0;  // index of the preceding sample
   for (std::size_t k = 0; k < n; ++k) {
     t[k] = c.t.front() + static_cast<double>(k) / rate;
     while (at + 2 < n && c.t[at + 1] <= t[k]) ++at;
@@ -356,7 +357,7 @@ bool put_onto_mean_rate(Comtrade& c) {
 void make_even(Comtrade& c, double min_rate, Problems& problems) {
   const auto& all = c.stretches;
   if (all.size() < 2 || (min_rate > 0 && put_onto_mean_rate(c))) return;
-  // The longest run of stretches that are fast enough.
+  // Find the longest run of consecutive stretches that are fast enough.
   std::size_t from = 0, to = 0;
   double longest = -1;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -365,7 +366,7 @@ void make_even(Comtrade& c, double min_rate, Problems& problems) {
     const double lasts = j > i ? c.t[all[j - 1].end - 1] - c.t[all[i].first] : -1;
     if (lasts > longest) longest = lasts, from = i, to = j;
   }
-  if (to == from) return;  // too slow as a whole, which the reader of waveforms reports
+  if (to == from) return;  // no stretch is fast enough: the reader of waveforms reports this
   double low = all[from].rate;
   for (std::size_t i = from; i < to; ++i) low = std::min(low, all[i].rate);
   std::string rates;
@@ -405,7 +406,7 @@ Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::s
                         const std::string& dat_name) {
   Problems problems;
   ComtradeConfig config = parse_comtrade_config(cfg, cfg_name, problems);
-  problems.raise();  // the data cannot be interpreted without it
+  problems.raise();  // the data cannot be interpreted without a valid configuration
   Comtrade record = Data(std::move(config), dat, dat_name, problems).read();
   problems.raise();
   return record;

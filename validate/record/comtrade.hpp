@@ -46,17 +46,17 @@ struct Comtrade {
   std::size_t sample_bytes = 0;  ///< size of a binary sample [bytes]; 0 for ASCII data
 };
 
-/// Returns the record of a configuration and its data; the names denote the files in messages. Notes report
-/// each contradiction between file and data that was resolved: data type, number of samples, truncated last
-/// sample, overflow of the time stamps. Throws InputError with every fault of both files and its line or
-/// byte: unknown revisions, invalid numbers, gaps in the sample numbers, a rate and stamps in different
-/// units.
+/// Returns the record of a configuration and its data; messages contain the two names. Notes report each
+/// contradiction that was resolved: data type, number of samples, truncated last sample, overflow of the time
+/// stamps. Throws InputError with every fault of both files and its line or byte: unknown revisions, invalid
+/// numbers, gaps in the sample numbers, a rate and stamps in different units.
 Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::string& cfg_name,
                         const std::string& dat_name);
 
-/// Converts the record to a single sampling rate: keeps the longest run of consecutive stretches of at least
-/// `min_rate` samples/s, and decimates its faster stretches to the rate of its slowest. The changes are
-/// noted; rates that are not multiples of the slowest become a problem.
+/// Converts the record to a single sampling rate. Waveforms (`min_rate` > 0) whose rates differ by at most 2
+/// % are resampled at the mean rate. Otherwise the longest run of consecutive stretches of at least
+/// `min_rate` samples/s is kept, and its faster stretches are decimated to the slowest rate. The changes are
+/// noted. Rates that are not multiples of the slowest become a problem.
 void make_even(Comtrade& comtrade, double min_rate, Problems& problems);
 
 /// Returns the record of one .cff file (2013), which contains configuration and data.

@@ -22,13 +22,13 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
                         const ReadOptions& options);
 
 /// Returns the record of a MATLAB file (v4, v5, v7.3). Vectors, matrices with a list of names, and structs of
-/// these become text columns; line numbers in messages count samples from 2. Throws InputError, also for
+/// these become text columns. Line numbers in messages count samples from 2. Throws InputError, also for
 /// truncated files.
 Record read_mat_record(const std::filesystem::path& file, const RecordBase& base, const ReadOptions& options);
 
-/// Returns the record of a PSCAD run, `source.config` its .inf. The channels are text columns: names are
-/// those of the output channels (with the group if several channels have the name), units those of the .inf.
-/// Throws InputError with the problems of the .inf and of all .out files.
+/// Returns the record of a PSCAD run, whose .inf is `source.config`. The channels are read like text columns.
+/// Their names and units are those of the .inf, with the group if several channels have the same name. Throws
+/// InputError with the problems of the .inf and of all .out files.
 Record read_pscad_record(const SourceFile& source, const RecordBase& base, const ReadOptions& options);
 
 /// Returns the bytes of a file; throws InputError if it cannot be read.

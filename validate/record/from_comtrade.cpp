@@ -28,7 +28,7 @@ struct Sequence {
   std::vector<Complex> x;
 };
 
-/// Returns a channel's values in kV or kA; without a channel, the negative sum of the other two.
+/// Returns a channel's values in kV or kA; for an absent channel, the negative sum of the other two.
 std::vector<double> samples_of(const WaveSet& set, std::size_t phase, SampleFaults& faults) {
   if (const Wave* w = set.waves[phase]) {
     std::vector<double> samples = w->channel->values;
@@ -66,7 +66,7 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
                  fmt::format("of {}, {}, {} the negative sequence is larger than the positive one", names[0],
                              names[1], names[2]),
                  fault->remedy + " (the .cfg defines the channels' names and phases)");
-  // Times and angles refer to the record's first sample, which may not be used.
+  // Times and angles refer to the record's first sample, which make_even may have removed.
   const double begin = comtrade.t.front();
   Sequence sequence;
   for (std::size_t k = 0; k < track.t.size(); ++k) {
@@ -124,7 +124,7 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
     problems.add(fmt::format("a record of a {:g} Hz grid", comtrade.nominal), comtrade.file,
                  fmt::format("the model is for {:g} Hz", base.frequency),
                  "set frequency_hz in the plant file, or take that plant's own record");
-  // Phasors require even spacing: a gap in waveforms is not interpolated.
+  // Phasors require evenly spaced samples, and a gap in waveforms is not interpolated.
   const EvenRows even = settle_rows({.t = comtrade.t,
                                      .resolution = comtrade.resolution,
                                      .same = [](std::size_t, std::size_t) { return false; }},

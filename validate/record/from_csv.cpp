@@ -92,7 +92,7 @@ class CsvReader {
       if (number_ <= top_.line && !belongs_to_header(cells)) continue;
       const bool data = is_data(cells);
       if (data && header_.empty() && by_number()) {
-        header_.emplace_back(cells.size());  // headings without names: the map counts them
+        header_.emplace_back(cells.size());  // empty headings: the column map counts the columns
         header_lines_.push_back(number_);
       }
       if (data && header_.empty())
@@ -118,7 +118,7 @@ class CsvReader {
     return column < header_[line].size() ? header_[line][column] : std::string_view{};
   }
 
-  /// Returns the header line with the most units as cells (at least two), if any.
+  /// Returns the header line with the most cells that are units (at least two), if any.
   [[nodiscard]] std::optional<std::size_t> unit_line() const {
     std::optional<std::size_t> best;
     std::size_t most = 1;
@@ -129,7 +129,7 @@ class CsvReader {
     return best;
   }
 
-  /// Returns the header line with the most quantities including units.
+  /// Returns the header line that names the most quantities; a quantity with a unit counts three times.
   [[nodiscard]] std::size_t quantity_line(std::optional<std::size_t> units) const {
     std::size_t best = 0, most = 0;
     for (std::size_t k = 0; k < header_.size(); ++k) {
@@ -144,7 +144,7 @@ class CsvReader {
     return best;
   }
 
-  /// Returns the line of stations: another line above with fewer names than columns, each for several
+  /// Returns the line of station names: a line above the quantities with at most a third as many names as
   /// columns. An empty cell repeats the name before it.
   [[nodiscard]] std::optional<std::size_t> station_line(std::size_t quantities,
                                                         std::optional<std::size_t> units) const {
@@ -189,8 +189,8 @@ class CsvReader {
     problems_.raise();
   }
 
-  /// Keeps the first of several times; "SOC" only with FRACSEC or alone, because it may be a state of charge.
-  /// The fraction of the second according to C37.118 is kept with it.
+  /// Keeps the first of several time columns. "SOC" is a time only with FRACSEC or alone, because it may be a
+  /// state of charge. Finds the column FRACSEC, the fraction of the second according to C37.118.
   void one_time(Record& about) {
     std::vector<std::size_t> times;
     for (std::size_t i = 0; i < headings_.size(); ++i) {
@@ -296,7 +296,7 @@ class CsvReader {
       raw.about.start = cell;
     }
     resolution_ = std::min(resolution_, s->resolution);
-    // Stamps without hours continue after the full hour.
+    // Stamps without hours begin at zero again after each full hour.
     if (s->in_hour && s->second < last_in_hour_ - 1800) hours_ += 3600;
     last_in_hour_ = s->in_hour ? s->second : 0;
     return hours_ + static_cast<double>(s->day - first_->day) * 86400 + (s->second - first_->second);
@@ -331,7 +331,7 @@ class CsvReader {
     return kNoValue;
   }
 
-  /// Treats a word in place of a number as a missing value; the words are noted.
+  /// Treats a word in place of a number as a missing value, and counts it for a note.
   void take_word(const RawColumn& column, std::string_view cell, std::size_t sample, SampleFaults& faults) {
     faults.lose(column.name, fmt::format("{} = '{}'", column.name, cell), sample, "this is no number",
                 "fill it at the source, cut the record before it, or export it again");
@@ -358,7 +358,7 @@ class CsvReader {
       raw.time_resolution = 0;
     else if (unit == Unit::millisecond || unit == Unit::microsecond || unit == Unit::nanosecond ||
              (!unit && !time->values.empty() && time->values.front() > 5e11))
-      raw.time_resolution = 1;  // whole milliseconds are rounded, too
+      raw.time_resolution = 1;  // times in whole milliseconds are rounded too
     if (fraction_) add_fractions(time->values, raw);
     for (const auto& [word, count] : words_)
       raw.about.notes.push_back(fmt::format("{} {} a number ('{}', {} {}:{}); treated as missing.", count,
@@ -366,7 +366,9 @@ class CsvReader {
                                             count == 1 ? "at" : "first at", name_, word_at_.at(word)));
   }
 
-  /// Adds fractions in seconds, or in counts of a clock whose counts per second are inferred from its wraps.
+  /// Adds the fractions of a second to the times. Their unit is that of the heading, or seconds if all are
+  /// below 1. Otherwise they are counts of a clock, whose counts per second are inferred from the largest
+  /// value.
   void add_fractions(std::vector<double>& t, RawRecord& raw) {
     const std::string name = headings_[*fraction_].name;
     double most = 0;
@@ -399,9 +401,10 @@ class CsvReader {
   Cells pending_, cells_;  ///< the first line of values, and the current one
   bool started_ = false, commas_ = false, points_ = false;
   std::optional<Stamp> first_;
-  double resolution_ = std::numeric_limits<double>::infinity();  ///< finest of the times, in their own unit
-  double hours_ = 0, last_in_hour_ = 0;                          ///< of stamps with minutes and seconds only
-  std::optional<std::size_t> fraction_;                          ///< column of FRACSEC
+  double resolution_ =
+      std::numeric_limits<double>::infinity();  ///< finest resolution of the times, in their unit
+  double hours_ = 0, last_in_hour_ = 0;         ///< of stamps with minutes and seconds only
+  std::optional<std::size_t> fraction_;         ///< column of FRACSEC
   std::vector<double> fractions_;
   std::map<std::string, int> words_, word_at_;  ///< words in place of numbers: count, and first line
   std::vector<int> lines_;                      ///< file line of each sample

@@ -14,8 +14,8 @@
 namespace swingbank::validate::record {
 namespace {
 
-/// Arrays and attributes of a run, read in a separate process. This one needs no HDF5, which a Python process
-/// may hold as another library.
+/// Arrays and attributes of a run, read in a separate process. The calling process then needs no HDF5
+/// library, of which a Python process may have loaded another version.
 class RunContents {
  public:
   using Array = mpi::store::h5::Contents::Array;

@@ -37,16 +37,19 @@ std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t widt
     value = value << 8U | static_cast<unsigned char>(bytes[at + (swapped ? k : width - 1 - k)]);
   return value;
 }
-/// Returns whether a v7.3 file, HDF5 after 512 bytes, is shorter than its superblock states.
+/// Returns whether a v7.3 file (HDF5 after a header of 512 bytes) is shorter than its superblock states.
 bool hdf5_is_cut_off(std::string_view bytes) {
   constexpr std::size_t kBegin = 512;
   if (bytes.size() < kBegin + 64 || !bytes.substr(kBegin).starts_with("\x89HDF")) return true;
   const auto version = bytes[kBegin + 8];
-  const std::size_t addresses = version == 0 ? 24 : version == 1 ? 28 : 12;  // base, another one, the end
+  const std::size_t addresses = version == 0 ? 24
+                                : version == 1
+                                    ? 28
+                                    : 12;  // offset of three addresses; the third is the file's end
   return bytes.size() < number_at(bytes, kBegin + addresses + 16, 8);
 }
-/// Returns whether a file is truncated: a v5 file consists of elements with their lengths, and ends within
-/// one.
+/// Returns whether a file is truncated. A v5 file consists of elements with stated lengths; it is truncated
+/// if it ends within an element.
 bool is_cut_off(std::string_view bytes) {
   if (bytes.starts_with("MATLAB 7.3")) return hdf5_is_cut_off(bytes);
   if (!bytes.starts_with("MATLAB 5")) return false;
@@ -154,7 +157,7 @@ class MatReader {
 
   void variable(matvar_t& v) { take(v, v.name == nullptr ? "?" : v.name, "", 0); }
 
-  /// Returns the columns as text for the reader of text.
+  /// Returns the columns as text separated by tabs, which parse_record reads.
   std::string text(const std::string& time) {
     name_tables();
     const std::size_t rows = time_rows(time);
@@ -193,8 +196,8 @@ class MatReader {
     tables_.push_back({full, place, v.dims[0], v.dims[1], std::move(*values)});
   }
 
-  /// Reads one struct: its fields, or a signal with its own times ("Time" and "Data", as a saved timeseries;
-  /// "time" and "signals", as logged by Simulink).
+  /// Reads one struct. It contains columns, or a signal with its own times: "Time" and "Data" in a saved
+  /// timeseries, "time" and "signals" in a log of Simulink.
   void structure(matvar_t& v, const std::string& name, int depth) {
     if (elements(v) == 0 || v.data == nullptr || depth >= kDeepestStruct)
       return seen_.push_back(name + " (struct)");
@@ -219,7 +222,8 @@ class MatReader {
     }
   }
 
-  /// Adds a column; signals with their own times must share them.
+  /// Adds a column. Only the first time column is added; another one with other values is listed in
+  /// other_times_.
   void add(const std::string& name, std::vector<double> values) {
     if (is_time(name))
       for (const MatColumn& c : columns_)
@@ -235,7 +239,7 @@ class MatReader {
     return name;
   }
 
-  /// Names the columns of a matrix by a list with as many names.
+  /// Converts matrices to columns. A list with as many names as a matrix has columns, or rows, names them.
   void name_tables() {
     for (const Table& table : tables_) {
       const Words* names = nullptr;
@@ -256,7 +260,7 @@ class MatReader {
     }
   }
 
-  /// Returns the number of samples, which is that of the times.
+  /// Returns the number of samples of the time column `asked`; if empty, of the first time column.
   [[nodiscard]] std::size_t time_rows(const std::string& asked) const {
     if (!other_times_.empty())
       refuse("signals with different times", "one record has one time vector",

@@ -24,7 +24,7 @@ constexpr std::size_t kChannelsPerPart = 10;
 
 /// One line of the .inf.
 struct PscadChannel {
-  std::size_t number = 0;  ///< of PGB(n), from 1
+  std::size_t number = 0;  ///< n of PGB(n), from 1
   std::string name, group, unit;
   int line = 0;
 };
@@ -48,8 +48,8 @@ void split_blanks(std::string_view line, std::vector<std::string_view>& cells) {
   }
 }
 
-/// Parses a number as Fortran writes it: also "1D-3", and "1-100" with a three-digit exponent. None: no
-/// number, as of an overflowing field "****".
+/// Parses a number as Fortran writes it: also "1D-3", and "1-100" with a three-digit exponent. Returns no
+/// value for other text, such as an overflowing field "****".
 std::optional<double> fortran_number(std::string_view cell) {
   if (cell.starts_with('+')) cell.remove_prefix(1);
   double value = 0;
@@ -106,8 +106,8 @@ std::vector<PscadChannel> parse_inf(std::string_view text, const std::string& fi
 /// One .out file: its rows, parsed for the chosen channels only.
 struct OutFile {
   std::string file;
-  std::size_t width = 0;                                        ///< columns, with the time
-  std::vector<std::pair<std::size_t, RawColumn*>> chosen = {};  ///< column from 1, and its destination
+  std::size_t width = 0;                                        ///< number of columns, including the time
+  std::vector<std::pair<std::size_t, RawColumn*>> chosen = {};  ///< column, from 1, and destination
   std::vector<double> t = {};
   std::vector<int> lines = {};  ///< line of each row
 };
@@ -131,7 +131,8 @@ class OutReader {
       split_blanks(line, cells_);
       if (cells_.empty() || (number_ == 1 && is_description())) continue;
       const bool last = text_.find_first_not_of(" \t\r\n\x1a") == std::string_view::npos;
-      // The columns have a fixed width, so that a shorter line without an end breaks off within a number.
+      // Columns have a fixed width. A shorter last line without a line end is therefore truncated within a
+      // number.
       const bool shorter = length_ > 0 && length_ == before_ && line.size() < length_;
       if (last && !ended && (cells_.size() < part_.width || shorter)) {
         problems_.add("a truncated last line", fmt::format("{}:{}", part_.file, number_),
@@ -208,7 +209,8 @@ class OutReader {
   Problems& problems_;
   std::vector<std::vector<BadRun>> runs_;  ///< [chosen channel]
   std::vector<std::string_view> cells_;
-  std::size_t length_ = 0, before_ = 0, width_seen_ = 0;  ///< of the last two lines; of the first wrong row
+  std::size_t length_ = 0, before_ = 0,
+              width_seen_ = 0;  ///< lengths of the last two lines; cells of the first wrong row
   int number_ = 0, wrong_ = 0, first_wrong_ = 0;
 };
 
@@ -236,7 +238,7 @@ std::vector<Heading> headings_of(const std::vector<PscadChannel>& channels) {
   for (const PscadChannel& c : channels) {
     const std::string name = seen[c.name] > 1 && !c.group.empty() ? c.group + "." + c.name : c.name;
     auto meaning = column_meaning(name, c.unit);
-    // "V_dc" with a unit of its own is no V: the unit at the end of a name is that of text columns.
+    // "V_dc" with a unit in the .inf is not V: only in text columns is the ending of a name a unit.
     if (meaning && !meaning->unit && !c.unit.empty()) meaning.reset();
     headings.push_back({name, meaning, c.unit});
   }
@@ -248,7 +250,7 @@ void check_rows(const std::vector<OutFile>& parts, Problems& problems) {
   for (std::size_t k = 1; k < parts.size(); ++k) {
     const OutFile &one = parts.front(), &other = parts[k];
     const std::size_t rows = std::min(one.t.size(), other.t.size());
-    // A hundredth of the interval, as between evenly spaced samples: a copy may have fewer digits.
+    // The tolerance is 1 % of the sample interval, because a copy may have fewer digits.
     const double near = rows > 1 ? 0.01 * (one.t[rows - 1] - one.t[0]) / static_cast<double>(rows - 1) : 0;
     const auto same = [near](double a, double b) { return std::abs(a - b) <= near; };
     const auto differs =
@@ -312,7 +314,7 @@ Record read_pscad_record(const SourceFile& source, const RecordBase& base, const
       continue;
     }
     hashes += sha256(bytes);
-    if (part.width == 0) continue;  // of no listed channel
+    if (part.width == 0) continue;  // contains no listed channel
     OutReader(part, bytes, options, problems).read();
   }
   if (problems.empty()) {

@@ -6,9 +6,9 @@
 
 namespace swingbank::validate::record {
 
-/// Returns the kind of file ("MATLAB 7.3", "MATLAB") in the first line, then names and values separated by
-/// tabs. `time` is the user's name of the time variable; if empty, it is found by its name. Throws
-/// InputError, also for truncated files.
+/// Returns a text: the kind of file ("MATLAB 7.3", "MATLAB") in the first line, then names and values
+/// separated by tabs. `time` is the name of the time variable given by the user; if empty, the variable is
+/// recognised by its name. Throws InputError, also for truncated files.
 std::string mat_text(const std::filesystem::path& file, const std::string& time);
 
 }  // namespace swingbank::validate::record

@@ -38,7 +38,7 @@ enum class Component {
 /// Returns the name of a component, "exciter".
 std::string_view component_name(Component component);
 
-/// An action of a staged test on the plant that the record's channels do not contain.
+/// Action of a staged test on the plant. The record's channels do not contain it.
 struct StagedEvent {
   /// Kind of a staged event.
   enum class Kind {
@@ -124,9 +124,9 @@ constexpr double kShortestRecord = 0.1;
 /// Longest gap of lost frames that is interpolated [s].
 constexpr double kLongestGap = 0.2;
 
-/// Column of the file for each quantity: {"V", "BUS1.VPM [kV]"}. Quantities are named as in names_of(). The
-/// column is its heading, or "#3" for the third one, with the unit in brackets if the file gives none; a
-/// leading "-" reverses the sign.
+/// Column of the file for each quantity: {"V", "BUS1.VPM [kV]"}. Quantities are named as in word_of(). The
+/// column is identified by its heading, or by "#3" for the third one. The unit follows in brackets if the
+/// file gives none. A leading "-" reverses the sign.
 using ColumnMap = std::map<std::string, std::string>;
 
 /// Options of reading a record.
@@ -137,7 +137,7 @@ struct ReadOptions {
   double until = std::numeric_limits<double>::infinity();  ///< later samples are left out [s]
   double phasor_rate = 0;  ///< phasors per second computed from waveforms; 0: one per nominal cycle
   bool power = true;       ///< P and Q (or the current) are required; false: they may be empty
-  bool part = false;       ///< the file is one of several that complete each other
+  bool part = false;       ///< the file is one of several that are joined to one record
   Component component = Component::plant;  ///< tested part of the plant
   /// Columns that a component's record must have: one word of each list ({"speed", "f"}).
   std::vector<std::vector<std::string>> needed = {};
@@ -149,11 +149,11 @@ struct ReadOptions {
 /// MATLAB, .h5 a run of `swingbank simulate`, .inf (or one of its .out) PSCAD, otherwise text columns
 /// (validate/record/README.md lists names, units and dialects). "FILE#TERMINAL" selects one of several
 /// terminals; "FILE+FILE" joins the columns of several files of one event. Columns that are not measurements
-/// of the terminal are listed in `ignored`. Repairs (shorter gaps, repeated stamps, clock adjustments) are
-/// listed in `notes`. check_record (validate/check/check.hpp) judges the content. Throws InputError with
-/// every fault of the file and its lines or bytes: missing, repeated or unitless columns, lines of unequal
-/// length, values that are not finite or missing for longer than kLongestGap, times that do not increase or
-/// are unevenly spaced, too few samples.
+/// of the terminal are listed in `ignored`. Repairs (short gaps, repeated stamps, clock adjustments) are
+/// listed in `notes`. check_record (validate/check/check.hpp) checks the content. Throws InputError with
+/// every fault of the file and its lines or bytes: missing or repeated columns, columns without unit, lines
+/// of unequal length, values that are not finite or missing for longer than kLongestGap, times that do not
+/// increase or are unevenly spaced, too few samples.
 Record read_record(const Source& source, const RecordBase& base, const ReadOptions& options = {});
 
 /// Reads a record, with the staged events that apply to the file. If the breaker is open during the whole
@@ -164,7 +164,7 @@ Record read_staged(const Source& source, const RecordBase& base, ReadOptions opt
 std::string_view staged_name(StagedEvent::Kind kind);
 constexpr int kStagedKinds = 5;  ///< number of kinds of staged events
 
-/// Reads a record from the text of a CSV file; `name` denotes the file in messages.
+/// Reads a record from the text of a CSV or playback file; `name` is the file's name in messages.
 Record parse_record(std::string_view text, const std::string& name, const RecordBase& base,
                     const ReadOptions& options = {});
 
@@ -174,8 +174,8 @@ std::string record_schema();
 /// Returns the samples from `from` to `until` [s] with unchanged times. Throws InputError if too few remain.
 Record stretch(Record record, double from, double until);
 
-/// Returns the quantisation step of the values: all lie on a grid with at most a third as many points as
-/// values. 0 if there is no such grid.
+/// Returns the quantisation step of the values. Returns 0 if the values do not lie on a grid, or if more than
+/// a third of them are distinct.
 double quantum(const std::vector<double>& values);
 
 /// Throws InputError if the record has neither a measured nor an integrated angle: play-in requires one.

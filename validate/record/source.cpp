@@ -54,7 +54,8 @@ SourceFile source_file(const std::filesystem::path& named) {
   file.name = named.filename().string();
   const std::string text = named.string();
   const auto at = text.rfind('#');
-  if (at != std::string::npos && at > 0 && !std::filesystem::exists(named)) {  // else part of the file's name
+  if (at != std::string::npos && at > 0 &&
+      !std::filesystem::exists(named)) {  // otherwise '#' is part of the file's name
     file.path = text.substr(0, at);
     file.terminal = text.substr(at + 1);
   }

@@ -6,7 +6,7 @@
 
 namespace swingbank::validate::record {
 
-/// One file of a record, or one of its terminals.
+/// One file of a record, with the selected terminal.
 struct SourceFile {
   /// Format of the file, by its extension.
   enum class Format { text, comtrade, hdf5, matlab, pscad };
@@ -21,7 +21,8 @@ struct SourceFile {
 
 /// Location of a record: "FILE", "FILE#TERMINAL", or the files of one event, "FILE+FILE".
 struct Source {
-  /// Determines the files of a record; converts implicitly, because a record is named by its path.
+  /// Determines the files of a record. The conversion is implicit, because callers identify a record by its
+  /// path.
   Source(const std::filesystem::path& named);
   /// The same, from a string.
   Source(const std::string& named) : Source(std::filesystem::path(named)) {}

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kHighestDegree = 7;
 constexpr double kRounding = 1e-9;  ///< relative residual below which fits count as equal
 
-/// A vector over the given values, followed by the abscissae of interpolation.
+/// Values at the given abscissae, followed by values at the abscissae in the gap.
 using Curve = std::vector<double>;
 
 double dot(const Curve& a, const Curve& b, std::size_t n) {
@@ -38,7 +38,7 @@ Across across(const std::vector<double>& at, const std::vector<double>& value,
   const std::size_t n = at.size();
   Curve x = at;
   x.insert(x.end(), inside.begin(), inside.end());
-  Curve rest = value;  // residual of the polynomial; beyond the values, the negated polynomial
+  Curve rest = value;  // residual of the polynomial; in the gap, the negated polynomial
   rest.resize(x.size(), 0.0);
   Curve step(x.size()), before(x.size(), 0.0), now(x.size(), 1.0);
   std::ranges::transform(x, step.begin(), [](double t) { return t > 0 ? 1.0 : 0.0; });

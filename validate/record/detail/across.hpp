@@ -5,15 +5,15 @@
 
 namespace swingbank::validate::record {
 
-/// Polynomial through the values beside a gap, with or without a step within it, of the degree with the least
-/// Akaike criterion (corrected for few values). Too low a degree misses the curvature of a swing; too high a
-/// one follows noise.
+/// Interpolation by a polynomial, fitted to the values on both sides of a gap with or without a step in the
+/// gap. Its degree has the least Akaike criterion (corrected for few values). Too low a degree misses the
+/// curvature of a swing; too high a degree follows noise.
 struct Across {
   std::vector<double> inside;  ///< values in the gap
-  double step = 0;             ///< their step within the gap; 0: smooth
+  double step = 0;             ///< step in the gap; 0 if the criterion prefers a smooth polynomial
 };
-/// Interpolates from (`at`, `value`) on both sides to the abscissae `inside`, scaled to about 1 on each side.
-/// Requires kMinAcross values.
+/// Interpolates at the abscissae `inside` from the values `value` at `at` on both sides. The abscissae are
+/// scaled to about 1 on each side. Requires at least kMinAcross values.
 Across across(const std::vector<double>& at, const std::vector<double>& value,
               const std::vector<double>& inside);
 constexpr std::size_t kMinAcross = 6;

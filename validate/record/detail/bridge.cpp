@@ -12,7 +12,7 @@
 namespace swingbank::validate::record {
 namespace {
 
-/// Samples first .. last are lost.
+/// Lost samples first .. last, both included.
 struct Gap {
   std::size_t first, last;
   [[nodiscard]] std::size_t samples() const { return last - first + 1; }
@@ -30,12 +30,12 @@ std::vector<Gap> gaps_of(std::size_t n, Lost lost) {
   return gaps;
 }
 
-constexpr double kStepThreshold = 0.02;  // [pu], [rad]: as for the detection of switchings
+constexpr double kStepThreshold = 0.02;  // [pu], [rad]; also used for the detection of switchings
 
-constexpr std::size_t kReach = 8;  // samples on each side: at 30/s a third of a swing's period
+constexpr std::size_t kReach = 8;  // samples on each side; at 30 samples/s about a third of a swing's period
 
-/// Returns the samples around a gap that are used for interpolation, up to the next gap or step. A third
-/// difference suppresses a swing but not a step.
+/// Returns the samples around a gap that are used for interpolation, up to the next gap or step. A step is
+/// detected by the third difference, which suppresses a swing but not a step.
 std::vector<std::size_t> beside(const Record& r, const Gap& gap) {
   const auto v = [&](std::size_t k) { return std::polar(r.V[k], r.theta.empty() ? 0.0 : r.theta[k]); };
   const auto walk = [&](std::size_t from, std::ptrdiff_t out, std::size_t available) {
@@ -57,7 +57,7 @@ std::vector<std::size_t> beside(const Record& r, const Gap& gap) {
   return all;
 }
 
-/// Interpolates one channel across the gap from these samples.
+/// Interpolates one channel across the gap from the samples `neighbours`.
 Across interpolate(const std::vector<double>& y, const Gap& gap, const std::vector<std::size_t>& neighbours) {
   const auto place = [&](std::size_t k) {
     return (static_cast<double>(k) - static_cast<double>(gap.first + gap.last) / 2) /
@@ -68,8 +68,8 @@ Across interpolate(const std::vector<double>& y, const Gap& gap, const std::vect
   for (std::size_t k = gap.first; k <= gap.last; ++k) inside.push_back(place(k));
   return across(at, value, inside);
 }
-/// Returns whether the voltage steps in the gap. With too few samples, its change is compared with the
-/// adjacent ones.
+/// Returns whether the voltage has a step in the gap. With fewer than kMinAcross neighbours, the change over
+/// the gap is compared with the changes just before and after it.
 bool steps_within(const Record& r, const Gap& gap, const std::vector<std::size_t>& neighbours) {
   if (neighbours.size() >= kMinAcross)
     return std::abs(interpolate(r.V, gap, neighbours).step) > kStepThreshold ||

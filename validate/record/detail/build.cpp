@@ -72,7 +72,8 @@ void check_magnitudes(const RawRecord& raw, SampleFaults& faults) {
                    "give V as a magnitude and theta as its angle; are their columns swapped?");
 }
 
-/// Returns whether a frequency in mHz is a deviation: its values are far below nominal.
+/// Returns whether a frequency in mHz is a deviation: all its values are below a quarter of nominal
+/// frequency.
 bool is_deviation(const RawColumn& column, const RecordBase& base) {
   if (column.meaning.unit != Unit::millihertz || column.meaning.deviation) return false;
   return std::ranges::none_of(column.values, [&](double v) { return std::abs(v) > 250 * base.frequency; });
@@ -98,7 +99,8 @@ RawColumn& time_of(RawRecord& raw) {
 }
 std::vector<double>& times_of(RawRecord& raw) { return time_of(raw).values; }
 
-/// Shifts times in seconds since an epoch to begin at zero, because reports cannot display them.
+/// Shifts times above 1e6 s, such as seconds since 1970, to begin at zero. Reports cannot display larger
+/// times.
 void begin_at_zero(RawRecord& raw, Record& about) {
   std::vector<double>& t = times_of(raw);
   if (t.empty() || !(std::abs(t.front()) > 1e6)) return;
@@ -127,8 +129,8 @@ void cut_rows(RawRecord& raw, const ReadOptions& options, SampleFaults& faults) 
   }
 }
 
-/// Returns whether a frame without this quantity is lost, because the model's inputs are required. Of a
-/// component, and of one file of several, this applies to every column.
+/// Returns whether a frame without this quantity is lost, because the quantity is an input of the playback.
+/// For a component, and for one of several joined files, every column is required.
 bool is_required(const RawRecord& raw, const ReadOptions& options, Quantity q) {
   if (options.part || options.component != Component::plant) return true;
   const auto has = [&](Quantity wanted) {
@@ -157,7 +159,8 @@ bool is_long_without(const std::vector<double>& values, const EvenRows& rows) {
   return static_cast<double>(longest) * step > kLongestGap * (1 + 1e-6);
 }
 
-/// Returns the rows on a uniform grid, without lost ones at either end; gaps that are too long become faults.
+/// Returns the rows on a uniform grid, without lost rows at either end. Gaps longer than kLongestGap become
+/// faults.
 EvenRows settle(RawRecord& raw, const ReadOptions& options, Record& r, SampleFaults& faults) {
   check_magnitudes(raw, faults);
   const std::vector<double>& t = times_of(raw);
@@ -181,7 +184,8 @@ EvenRows settle(RawRecord& raw, const ReadOptions& options, Record& r, SampleFau
   return rows;
 }
 
-/// Returns a column's values at the places of the grid; NaN if none was recorded.
+/// Returns a column's values at fractional row numbers, interpolated linearly; NaN where the row number is
+/// NaN.
 std::vector<double> at_places(const std::vector<double>& values, const std::vector<double>& places) {
   std::vector<double> all;
   all.reserve(places.size());
@@ -197,8 +201,8 @@ std::vector<double> at_places(const std::vector<double>& values, const std::vect
   return all;
 }
 
-/// Interpolates linearly over samples that a column lacks although their frames were recorded. Returns these
-/// samples.
+/// Interpolates one column linearly at samples whose frame was recorded without this column's value. Returns
+/// the interpolated samples.
 std::vector<std::size_t> fill_unmeasured(std::vector<double>& values, const EvenRows& rows) {
   std::vector<std::size_t> filled;
   for (std::size_t k = 0; k < values.size(); ++k)
@@ -219,7 +223,8 @@ std::vector<std::size_t> fill_unmeasured(std::vector<double>& values, const Even
   return filled;
 }
 
-/// Returns marks of the frames in which a compared channel has no value.
+/// Sets the channels of `r` on the grid `rows`. Returns marks of the frames in which a compared channel has
+/// no value.
 std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r) {
   std::vector<double> current, angle;
   std::vector<char> unmeasured;
@@ -262,7 +267,8 @@ std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r)
   return unmeasured;
 }
 
-/// Integrates the frequency if no angle was recorded; without a frequency there is no angle.
+/// Integrates the frequency if no angle was recorded. Without a frequency, and for an exciter or governor,
+/// the angle is zero and its source AngleSource::none.
 void settle_angle(Record& r) {
   if (!r.theta.empty()) return;
   if (r.component == Component::exciter || r.component == Component::governor) {
@@ -291,7 +297,7 @@ void settle_angle(Record& r) {
         "An exciter alone needs no angle, and Efd is recorded: test it with --component exciter.");
 }
 
-/// Copies the channels of `from` to the times of `all`, with linear interpolation if they differ.
+/// Copies the channels of `from` to the record `all`, with linear interpolation if their times differ.
 void take_over(Record& from, Record& all, const std::string& files, Problems& problems) {
   const double slack = 1e-3 * all.step();
   const double first = std::max(all.t.front(), from.t.front()), last = std::min(all.t.back(), from.t.back());
@@ -369,7 +375,7 @@ void SampleFaults::keep_rows(std::vector<std::size_t> rows) {
 }
 
 void SampleFaults::add_to(std::vector<Fault>& faults, Fault fault) {
-  // Faults of several columns may alternate: search for this subject's last fault among the recent ones.
+  // Faults of several columns may alternate, so this subject's last fault is searched among the recent ones.
   const std::size_t recent = std::min<std::size_t>(faults.size(), 2 * kQuantities);
   for (auto f = faults.rbegin(); f != faults.rbegin() + static_cast<std::ptrdiff_t>(recent); ++f)
     if (f->subject == fault.subject && f->why == fault.why && f->last + 1 == fault.first) {

@@ -16,23 +16,24 @@ struct Heading {
   std::string name;  ///< as written in the file
   std::optional<ColumnMeaning> meaning;
   std::string unit = {};  ///< from another header line
-  /// Returns whether the heading, or the line of units, names an unknown unit in brackets.
+  /// Returns whether the line of units, or else the heading in brackets, contains an unknown unit.
   [[nodiscard]] bool unknown_unit() const;
 };
 
-/// Faults of single samples. Neighbouring samples with the same fault become one sentence.
+/// Faults of single samples. Consecutive samples with the same fault become one message.
 class SampleFaults {
  public:
   /// Returns the location of samples first … last: "r.csv:5-9".
   using Where = std::function<std::string(std::size_t first, std::size_t last)>;
   explicit SampleFaults(Where where) : where_(std::move(where)) {}
-  /// Adds a fault. `subject` identifies repetitions (a column); `what` describes the first sample.
+  /// Adds a fault. Faults of consecutive samples with the same `subject` (usually a column) and `why` are
+  /// merged; `what` describes the first.
   void add(const std::string& subject, std::string what, std::size_t sample, std::string why,
            std::string remedy);
   /// Adds a missing value, which becomes a fault in report_missing() if its gap is longer than kLongestGap.
   void lose(const std::string& subject, std::string what, std::size_t sample, std::string why,
             std::string remedy);
-  /// Returns marks of the samples of lose(); empty if there are none.
+  /// Returns marks of the samples passed to lose(); empty if there are none.
   [[nodiscard]] std::vector<char> lost(std::size_t samples) const;
   void report_missing();
   /// Removes faults of samples outside first .. last.
@@ -61,30 +62,31 @@ struct RawColumn {
   std::vector<double> values;  ///< as written; NaN if a fault was added
 };
 
-/// A file's columns before conversion of units, with facts that only its reader can supply.
+/// A file's columns before conversion of units, with properties that only its reader knows.
 struct RawRecord {
   std::vector<RawColumn> columns;
   double time_resolution = 0;  ///< rounding of the times [in their own unit]; 0: not known
-  bool uneven = false;         ///< arbitrary sample times, linear between samples
+  bool uneven = false;         ///< the sample times are arbitrary, and values are linear between them
   Record about;                ///< name, format, terminal, start, ignored, notes
 };
 
-/// Returns the columns to read, in the file's order, and sets the meaning of those that options.columns
-/// names. Unknown ones go to `about.ignored`. Of several terminals it chooses the requested one or the only
-/// complete one; if the voltage is measured at one and the current at another, both. Adds a problem for each
-/// column that is repeated, unitless or missing.
+/// Returns the indices of the columns to read, in the file's order. Sets the meaning of the columns named in
+/// options.columns, and adds unknown columns to `about.ignored`. Of several terminals, it chooses the
+/// requested one or the only complete one. If the voltage is measured at one terminal and the power or
+/// current at another, it chooses both. Adds a problem for each column that is repeated, missing or without a
+/// unit.
 std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const ReadOptions& options,
                                         const RecordBase& base, const std::string& where, Record& about,
                                         Problems& problems);
 
 /// Converts units and times, interpolates short gaps, and computes power from the current if P and Q are not
-/// given. Unwraps the angle, or integrates the frequency if there is none. Throws InputError with `problems`,
-/// `faults` and further ones.
+/// given. Unwraps the angle, or integrates the frequency if the file has no angle. Throws InputError with
+/// `problems`, `faults` and all faults found here.
 Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& options, SampleFaults faults,
                     Problems problems, const std::string& file);
 
-/// Joins the columns of several files of one event to one record, at the samples of the file that contains P.
-/// Throws InputError if a quantity is missing or occurs twice.
+/// Joins the columns of several files of one event to one record, sampled at the times of the file that
+/// contains P. Throws InputError if a quantity is missing or occurs twice.
 Record join_records(std::vector<Record> parts, const ReadOptions& options, const std::string& files);
 
 }  // namespace swingbank::validate::record

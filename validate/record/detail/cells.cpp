@@ -14,7 +14,8 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Returns digits in groups of three without the separating `mark`. None: no such groups.
+/// Returns the digits without the thousands separator `mark`; none if `mark` does not separate groups of
+/// three.
 std::optional<std::string> ungrouped(std::string_view digits, std::string_view mark) {
   std::string all;
   std::size_t group = 0, groups = 0;
@@ -45,7 +46,7 @@ std::string plain(std::string_view cell, char separator, Number& n) {
   }
   const auto comma = cell.find(','), point = cell.find('.');
   const auto npos = std::string_view::npos;
-  // The last mark separates the decimals; one mark of another kind before it separates thousands.
+  // The last mark separates the decimals; marks of the other kind before it separate thousands.
   const auto last_comma = cell.rfind(','), last_point = cell.rfind('.');
   const bool commas_first = comma != npos && point != npos && last_comma < point;
   const bool points_first = comma != npos && point != npos && last_point < comma;
@@ -73,7 +74,8 @@ std::string plain(std::string_view cell, char separator, Number& n) {
   return sign + std::string(cell);
 }
 
-/// Returns whether blanks separate the values: three lines are numbers without another separator.
+/// Returns whether blanks separate the values: three of the first 50 lines consist of numbers and contain no
+/// other separator.
 bool by_blanks(std::string_view text) {
   int found = 0;
   for (int n = 0; n < 50 && !text.empty(); ++n) {
@@ -206,7 +208,7 @@ TableTop find_top(std::string_view text, const ColumnMap& columns) {
       for (const auto cell : cells) quantities += counts(cell) ? 1 : 0;
       if (quantities > most) most = quantities, top = {separator, n}, found = true;
     }
-    // Without a known heading: the first line of several cells.
+    // Without a known heading, the table begins at the first line with several cells.
     const char separator = blanks ? ' ' : separator_of(line);
     if (!found && first < 0 && split(line, separator).size() > 1) top = {separator, n}, first = n;
   }

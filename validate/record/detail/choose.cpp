@@ -20,7 +20,7 @@ using enum Quantity;
 
 bool has(const Present& present, Quantity q) { return present[static_cast<std::size_t>(q)]; }
 
-/// Returns the lists of alternative quantities that a component requires and of which the file has none.
+/// Returns those lists of alternative quantities, required by a component, of which the file contains none.
 std::vector<std::vector<Quantity>> missing_lists(const Present& present, const ReadOptions& options) {
   std::vector<std::vector<Quantity>> all;
   for (const auto& words : options.needed) {
@@ -113,8 +113,8 @@ std::optional<Terminals> two_devices(const std::vector<Heading>& headings, const
   return both;
 }
 
-/// Returns the terminal to read: the requested one, the nameless one, the only complete one, or two that
-/// complete each other.
+/// Returns the terminal to read: the requested one, that of columns without a terminal, the only complete
+/// one, or two that complete each other.
 Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptions& options,
                            const std::string& where, Record& about, Problems& problems) {
   const std::string& asked = options.terminal;
@@ -132,7 +132,7 @@ Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptio
   if (all.empty() || missing(present_in(headings, {}), options).empty()) return {};
   for (const auto& t : all)
     if (missing(present_in(headings, t), options).empty()) complete.insert(t);
-  std::erase_if(complete, [&](const std::string& t) {  // the whole, not its parts
+  std::erase_if(complete, [&](const std::string& t) {  // keep equipment, not its parts
     return std::ranges::any_of(complete, [&](const auto& o) { return o != t && belongs(o, t); });
   });
   if (complete.size() > 1)
@@ -187,8 +187,8 @@ std::string_view trimmed(std::string_view s) {
   return s;
 }
 
-/// Returns the heading that the user's text names: "#3", the heading itself, with its station, or ignoring
-/// case and blanks.
+/// Returns the index of the heading that the user's text identifies. The text is "#3" (the third column), the
+/// heading, "TERMINAL.HEADING", or the heading in another case or with other blanks.
 std::optional<std::size_t> find_heading(const std::vector<Heading>& headings, std::string_view text) {
   if (std::size_t n = 0; text.starts_with('#')) {
     const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), n);
@@ -199,7 +199,7 @@ std::optional<std::size_t> find_heading(const std::vector<Heading>& headings, st
     std::optional<std::size_t> found;
     for (std::size_t i = 0; i < headings.size(); ++i)
       if (same(headings[i])) {
-        if (found) return std::nullopt;  // two of that name
+        if (found) return std::nullopt;  // two headings match
         found = i;
       }
     return found;
@@ -208,7 +208,7 @@ std::optional<std::size_t> find_heading(const std::vector<Heading>& headings, st
   if (const auto i =
           find([&](const Heading& h) { return h.meaning && h.meaning->terminal + "." + h.name == text; }))
     return i;
-  if (text.starts_with('-')) return std::nullopt;  // a sign
+  if (text.starts_with('-')) return std::nullopt;  // reversed sign, which the caller removes
   return find([&](const Heading& h) { return !h.name.empty() && normalised(h.name) == normalised(text); });
 }
 
@@ -293,8 +293,8 @@ class Mapper {
   Problems& problems_;
 };
 
-/// Returns whether a column is the nearest to the terminal among those of the same quantity: "32/1" before
-/// "32".
+/// Returns whether no column of the same quantity belongs more closely to the terminal: "32/1" is preferred
+/// to "32".
 bool is_nearest(const std::vector<Heading>& headings, const Heading& one, const Terminals& terminals) {
   const ColumnMeaning& m = *one.meaning;
   return std::ranges::none_of(headings, [&](const Heading& h) {

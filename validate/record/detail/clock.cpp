@@ -15,7 +15,7 @@ constexpr double kDay = 86400;
 struct Clock {
   double from, until;  ///< range of values: 1985 to 2128 for ticks, 1982 to 2100 for days
   Unit unit;
-  double origin;  ///< 1970-01-01 [days]
+  double origin;  ///< count at 1970-01-01 [days]
   std::string_view what;
 };
 constexpr Clock kDays[] = {
@@ -34,8 +34,8 @@ RawColumn& time_column(RawRecord& raw) {
                             [](const RawColumn& c) { return c.meaning.quantity; });
 }
 
-/// Returns the 10 % quantile of the steps between finite values; NaN if there are none. A simulation's
-/// variable steps make the longer ones unrepresentative.
+/// Returns the 10 % quantile of the positive steps; NaN if there are none. Longer steps are not
+/// representative of simulations with variable steps.
 double usual_step(const std::vector<double>& t) {
   std::vector<double> steps;
   for (std::size_t k = 0; k + 1 < t.size(); ++k)
@@ -70,7 +70,7 @@ void count_days(RawRecord& raw, RawColumn& time, double first, const Clock& cloc
 
 void settle_clock(RawRecord& raw) {
   constexpr double kMostOfASample =
-      1.2e-5;  // days: 1 s. In double precision, seconds since so long ago have longer steps.
+      1.2e-5;  // [days], 1 s. Times in the range of kDays with a longer step are seconds.
   RawColumn& time = time_column(raw);
   auto& unit = time.meaning.unit;
   if (unit && unit != Unit::day) return;
@@ -93,8 +93,8 @@ bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const 
   const auto plausible = [](double step) { return step > 1e-4 && step < 0.2; };
   const double step = usual_step(t);
   if (!(step > 0)) return false;
-  // If most samples share a time, times were rounded or the clock stopped, which settle_rows reports. Their
-  // steps are not those of the samples.
+  // If most samples have the time of their predecessor, times were rounded or the clock stopped, which
+  // settle_rows reports. The remaining steps are then not sample intervals.
   std::size_t repeated = 0;
   for (std::size_t k = 1; k < t.size(); ++k) repeated += t[k] == t[k - 1];
   if (2 * repeated > t.size()) return false;

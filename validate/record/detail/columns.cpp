@@ -170,7 +170,7 @@ const Alias* find_alias(std::string_view name) {
   const auto found = std::ranges::find(kAliases, name, &Alias::name);
   return found == std::end(kAliases) ? nullptr : &*found;
 }
-/// Returns the meaning; `named` is the unit as written in the file.
+/// Returns the meaning of a column; `named` is its unit as written in the file.
 ColumnMeaning meaning(const Alias& alias, std::string_view named) {
   std::optional<Unit> unit = find_unit(named);
   if (unit && !fits(alias.quantity, *unit)) unit.reset();
@@ -254,7 +254,7 @@ std::optional<ColumnMeaning> psse_channel(std::string_view heading) {
       {"XADIFD", {Quantity::Ifd, Unit::pu, false, {}, false}},
       {"XADI", {Quantity::Ifd, Unit::pu, false, {}, false}}};
   const std::string word = part[1].str(), id = part[3].str();
-  if (word == "ANGL" && !id.empty()) return std::nullopt;  // rotor angle, not the bus's
+  if (word == "ANGL" && !id.empty()) return std::nullopt;  // rotor angle, not that of the bus voltage
   ColumnMeaning m = words.at(word);
   m.terminal = id.empty() ? part[2].str() : part[2].str() + "/" + id;
   return m;

@@ -17,14 +17,14 @@ struct ColumnMeaning {
   bool deviation = false;    ///< values are deviations from nominal (speed), not 1 at nominal (omega)
   std::string terminal;      ///< prefix of the name: "G2" of "G2.V_pu"
   bool negated = false;      ///< the file's sign is opposite
-  /// A unit is given but does not belong to the quantity. The values determine a missing unit of the time,
-  /// but not an unknown one.
+  /// A unit is given but does not belong to the quantity. A missing unit of the time is inferred from the
+  /// values, an unknown one is not.
   bool unknown_unit = false;
   std::optional<Phase> phase = {};  ///< phase of a three-phase quantity; none: positive sequence
 };
 
 /// Returns the meaning of a heading: "V_pu", "V (kV)", "P [MW]", "G2.theta_rad", or "VOLTAGE_MAG" with `unit`
-/// from another header line. Case, blanks, '_' and '-' are ignored. None: not a quantity that is read.
+/// from another header line. Case, blanks, '_' and '-' are ignored. Returns no value for other headings.
 std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::string_view unit = {});
 
 /// Returns the quantity denoted by a user's word ("V", "omega"), without unit.

@@ -69,11 +69,12 @@ class Config {
     c_.about.station = f[0];
     c_.about.device = f.size() > 1 ? f[1] : "";
     if (f.size() < 3 || f[2].empty()) {
-      c_.about.revision = 1991;  // contains no revision
+      c_.about.revision = 1991;  // this format has no revision year
       return true;
     }
     const double year = number(f, 2, "revision year");
-    // Some recorders write the year of manufacture; only the 1999 format lies between those of 1991 and 2013.
+    // Some recorders write their year of manufacture. Years between 1991 and 2013 are read as 1999, later
+    // ones as 2013.
     const bool between = year > 1991 && year<2013, later = year> 2013 && year < 2100;
     c_.about.revision = year == 1991 ? 1991 : between ? 1999 : later || year == 2013 ? 2013 : 0;
     if (c_.about.revision != 0 && c_.about.revision != year)
@@ -118,7 +119,7 @@ class Config {
   void channel() {
     const Fields f = next();
     if (ended_) return;
-    const bool old = c_.about.revision == 1991 && f.size() < kFields;  // without ratio and side
+    const bool old = c_.about.revision == 1991 && f.size() < kFields;  // no ratio and side of the transformer
     if (f.size() < (old ? kFieldsOf1991 : kFields)) {
       fault(fmt::format("analogue channel with {} fields", f.size()),
             fmt::format("there must be {}", old ? kFieldsOf1991 : kFields), "export the configuration again");
@@ -185,7 +186,8 @@ class Config {
     const std::string_view first = comtrade_line(rest_);
     ++number_;
     c_.about.start = c_.about.revision == 1991 ? start_of_1991(trim(first)) : std::string(trim(first));
-    // Stamps are in microseconds, or in nanoseconds if the dates have as many digits (2013, 7.4.7).
+    // Time stamps are in nanoseconds if the seconds of the date have more than six decimals (2013,
+    // clause 7.4.7), otherwise in microseconds.
     const auto point = first.rfind('.');
     std::size_t digits = 0;
     while (point != std::string_view::npos && point + 1 + digits < first.size() &&
@@ -208,7 +210,7 @@ class Config {
       fault("the time multiplier", "it must be positive", "export the configuration again");
   }
 
-  /// Reads the last line, which exists since 1999.
+  /// Returns the time multiplier of the last line, which exists since 1999; 1 if the line is missing.
   double time_multiplier() {
     const bool given = !trim(rest_.substr(0, rest_.find('\n'))).empty();
     if (given) return number(next(), 0, "time multiplier");

@@ -21,10 +21,10 @@ struct ComtradeConfig {
 /// Parses the configuration and adds a problem for every fault; the result is valid only if there is none.
 ComtradeConfig parse_comtrade_config(std::string_view cfg, const std::string& name, Problems& problems);
 
-/// Returns the text between separators, without surrounding blanks.
+/// Returns the text between commas, without surrounding blanks, CR and the end-of-file mark 0x1A.
 std::vector<std::string_view> comtrade_fields(std::string_view line);
 std::optional<double> comtrade_number(std::string_view text);
-/// Removes the first line from `text` and returns it; CR LF, LF and the end-of-file mark 0x1A end lines.
+/// Removes the first line, which ends with LF, from `text` and returns it without the LF.
 std::string_view comtrade_line(std::string_view& text);
 
 }  // namespace swingbank::validate::record

@@ -17,7 +17,8 @@ const RawColumn* find(const RawRecord& raw, Quantity q) {
   return at == raw.columns.end() ? nullptr : &*at;
 }
 
-/// Returns the columns that are all zero in a lost frame; empty if they are not conclusive.
+/// Returns the columns that are all zero in a lost frame. Empty without a voltage or a power, because zeros
+/// are then not conclusive.
 std::vector<RawColumn*> phasors_of(RawRecord& raw) {
   std::vector<RawColumn*> all;
   bool power = false, voltage = false;
@@ -33,8 +34,8 @@ std::vector<RawColumn*> phasors_of(RawRecord& raw) {
   return all;
 }
 
-/// Returns whether V and the powers continue after row `after` as at row `before`: within 0.02 pu and 5 % of
-/// the power, or within their movement in as many rows before.
+/// Returns whether V and the power at row `after` equal those at row `before`. The tolerance is 0.02 pu and 5
+/// % of the power, or 1.5 times the movement over as many rows before `before`.
 bool goes_on(const RawRecord& raw, std::size_t before, std::size_t after) {
   constexpr double kVoltageGoesOn = 0.02, kPowerGoesOn = 0.05;
   const auto moved = [&](const RawColumn& c) {

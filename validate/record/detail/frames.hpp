@@ -7,13 +7,14 @@ namespace swingbank::validate::record {
 /// Returns whether two rows hold the same values, apart from the time.
 bool same_rows(const RawRecord& raw, std::size_t a, std::size_t b);
 
-/// Removes rows that go back in time and repeat times and values of earlier rows, as overlapping archives
-/// contain them. They are noted.
+/// Removes rows that go back in time and repeat times and values of earlier rows, as in overlapping archives.
+/// Their number is noted.
 void drop_repeats(RawRecord& raw, SampleFaults& faults);
 
 /// Marks frames in which voltage, power, current and their angles are exactly zero as lost, if V, P and Q
-/// continue after them as before. A bolted fault at the terminals, which a simulation may write as zeros,
-/// would leave another voltage and power. Frames at either end are lost, too. Both interpretations are noted.
+/// continue after them as before. After a bolted fault at the terminals, which a simulation may write as
+/// zeros, voltage and power would differ. Such frames are kept. Frames of zeros at either end are lost too.
+/// Lost and kept frames are noted.
 void lose_zero_frames(RawRecord& raw, SampleFaults& faults);
 
 }  // namespace swingbank::validate::record

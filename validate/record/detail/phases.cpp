@@ -29,7 +29,7 @@ std::string_view without_unit(std::string_view heading) {
   return heading.substr(0, at);
 }
 
-/// Returns lower case with one '_' for any separator of words: "VB_A" differs from "VBA".
+/// Returns the text in lower case with one '_' for each separator of words. Thus "VB_A" differs from "VBA".
 std::string parted(std::string_view text) {
   std::string all;
   for (const char c : text)
@@ -47,7 +47,7 @@ double median_finite(const std::vector<double>& values) {
   return finite.empty() ? kNoValue : upper_median(std::move(finite));
 }
 
-/// Columns of one quantity by phase; nullptr: not recorded.
+/// Columns of one quantity by phase; nullptr if a phase was not recorded.
 using Three = std::array<RawColumn*, 3>;
 Three three_of(RawRecord& raw, Quantity q) {
   Three all{};
@@ -175,7 +175,8 @@ class Combination {
                         fault->remedy});
     RawColumn size{names[0], {magnitude, Unit::pu, false, {}, false}, {}};
     RawColumn turned{first_of(angles).name, {angle, Unit::radian, false, {}, false}, {}};
-    // Conversion to pu handles line-to-line voltages, so the factor of positive_sequence() is reversed.
+    // The conversion to pu already handles line-to-line voltages, so the factor 1/sqrt(3) of
+    // positive_sequence() is cancelled.
     const double back = between ? std::sqrt(3.0) : 1.0;
     for (std::size_t k = 0; k < x[0].size(); ++k) {
       const Complex one = back * positive_sequence({x[0][k], x[1][k], x[2][k]}, between);
@@ -239,7 +240,7 @@ std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string
 
 void keep_needed_phases(std::vector<Heading>& headings) {
   struct Terminal {
-    std::map<Quantity, std::map<bool, std::set<std::size_t>>> phases;  ///< by line-to-line or to neutral
+    std::map<Quantity, std::map<bool, std::set<std::size_t>>> phases;  ///< inner key: whether line to line
     std::set<Quantity> whole;
   };
   std::map<std::string, Terminal> terminals;

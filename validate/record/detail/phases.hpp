@@ -10,8 +10,8 @@
 namespace swingbank::validate::record {
 
 /// Returns the meaning of "Va_mag", "VA_Ang (deg)", "IC_M", "PhA Voltage Magnitude" or "Vab_kV": magnitude or
-/// angle of one phase, or of a line-to-line voltage. A magnitude to neutral has a line-to-neutral unit.
-/// Returns no value for any other heading.
+/// angle of one phase, or of a line-to-line voltage. The unit of a voltage to neutral is converted to a
+/// line-to-neutral unit. Returns no value for any other heading.
 std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string_view unit);
 
 /// Clears the meaning of unneeded phase columns: incomplete sets, all phases of a quantity whose positive
@@ -23,7 +23,8 @@ void keep_needed_phases(std::vector<Heading>& headings);
 bool is_unit_in_values(const Heading& heading);
 
 /// Infers units missing in the headings from the values, and replaces three phases by the positive sequence
-/// [pu, rad]. The result is noted. Throws InputError if no unit fits, or if the phase sequence is A-C-B.
+/// [pu, rad]. The result is noted. Throws InputError if no unit fits, the phase sequence is A-C-B or one
+/// phase is reversed.
 void combine_phases(RawRecord& raw, const RecordBase& base, const std::string& file);
 
 }  // namespace swingbank::validate::record

@@ -26,18 +26,20 @@ struct PhasorTrack {
 /// second, with time stamps in the middle. The positive sequence of balanced waveforms is free of harmonics
 /// and, off nominal, of the negative-frequency image. Its magnitude is low by 1 - sinc(f/f0 - 1): 0.05 % at 1
 /// Hz off nominal. Samples at the window's ends are weighted by the part of their interval inside, so a cycle
-/// need not contain a whole number of them. Empty if the waveforms are shorter than a cycle.
+/// need not contain a whole number of samples. Returns an empty track if the waveforms are shorter than a
+/// cycle.
 PhasorTrack phase_phasors(const Waveforms& waves, double nominal, double phasors_per_second);
 
 /// Returns the positive sequence of phasors a, b, c. For voltages ab, bc, ca, it is the line-to-neutral one:
 /// divided by sqrt(3) and delayed by 30 degrees.
 std::complex<double> positive_sequence(const std::array<std::complex<double>, 3>& x, bool between);
 
-/// Error in the order or signs of three phases, from the summed magnitudes of their sequence components:
-/// phase sequence A-C-B, or one phase reversed. None if the positive sequence dominates.
+/// Error in the order or signs of three phases: phase sequence A-C-B, or one phase reversed.
 struct SequenceFault {
   std::string what, remedy;
 };
+/// Finds the error by comparing the summed magnitudes of the sequence components; none if the positive
+/// sequence dominates.
 std::optional<SequenceFault> sequence_fault(const std::array<std::vector<std::complex<double>>, 3>& x,
                                             const std::array<std::string, 3>& names);
 

@@ -70,7 +70,7 @@ class Playback {
   }
 
  private:
-  /// Locates the values between braces and identifies their fields.
+  /// Locates the values between braces and the fields of time, voltage and frequency.
   void find_block() {
     powerworld_ = true;
     const auto open = text_.find('['), close = text_.find(']', open), brace = text_.find('{', close);

@@ -32,7 +32,7 @@ constexpr std::string_view kIdleInDates =
     "de del di of the den le mon tue tues wed thu thur thurs fri sat sun monday tuesday wednesday thursday friday "
     "saturday sunday g г";
 
-/// Returns the month, 1 to 12; 0 if there is none, or several fit.
+/// Returns the month, 1 to 12; 0 if no month or several months match.
 long month_of(std::string_view word) {
   const std::size_t letters = static_cast<std::size_t>(
       std::ranges::count_if(word, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -57,7 +57,7 @@ bool is_letter(char c) {
 struct Part {
   std::string_view text;
   bool number = false;
-  char before = '\0';  ///< separator from the part before
+  char before = '\0';  ///< separator before this part
 };
 
 long number_of(std::string_view digits) {
@@ -115,8 +115,8 @@ class Reader {
     return p;
   }
 
-  /// Reads three numbers, two and a month's name in any order, or eight digits; then the separator from the
-  /// time.
+  /// Reads a date: three numbers, two numbers and a month's name in any order, or eight digits. Then skips
+  /// the separator of date and time.
   bool date() {
     std::vector<Part> numbers;
     long month = 0;
@@ -221,7 +221,7 @@ class Reader {
     return hms[0] < 24 && hms[1] < 60 && hms[2] < 61;
   }
 
-  /// Reads "PM", "p. m.", "Z", "+02:00", "CET", "UTC+1".
+  /// Reads the end of a stamp: "PM", "p. m.", "Z", "+02:00", "CET", "UTC+1".
   bool end() {
     const auto skip = [&] {
       while (!rest_.empty() && rest_.front() == ' ') rest_.remove_prefix(1);
@@ -231,7 +231,7 @@ class Reader {
     const std::string half = letter < 5 ? normalised(rest_.substr(0, letter + 1)) : std::string();
     if (half == "am" || half == "pm") {
       const double hour = 3600;
-      // Some write 13:05 PM, to which no hours are added.
+      // No hours are added to "13:05 PM", which some programs write.
       if (half == "pm" && stamp_.second < 12 * hour) stamp_.second += 12 * hour;
       if (half == "am" && stamp_.second >= 13 * hour) return false;
       if (half == "am" && stamp_.second >= 12 * hour) stamp_.second -= 12 * hour;
@@ -246,7 +246,7 @@ class Reader {
     const bool utc = is_word_of(zone, "z utc gmt");
     if (letters > 5 || (letters > 0 && !utc && letters < 3)) return false;
     rest_.remove_prefix(letters);
-    stamp_.zoned = utc || letters == 0;  // the meaning of other names depends on the country
+    stamp_.zoned = utc || letters == 0;  // the meaning of other zone names depends on the country
     if (rest_.empty()) return true;
     const bool east = rest_.front() == '+';
     if ((!east && rest_.front() != '-') || (letters > 0 && !utc)) return false;

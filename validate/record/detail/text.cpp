@@ -67,14 +67,14 @@ void append(std::string& out, std::uint32_t c) {
   }
 }
 
-/// 0x80 .. 0xBF of Windows-1251; 0xC0 .. 0xFF are the letters from U+0410 on.
+/// Characters 0x80 .. 0xBF of Windows-1251; 0xC0 .. 0xFF are the letters from U+0410 on.
 constexpr std::array<std::uint16_t, 64> k1251 = {
     0x402, 0x403,  0x201A, 0x453, 0x201E, 0x2026, 0x2020, 0x2021, 0x20AC, 0x2030, 0x409,  0x2039, 0x40A,
     0x40C, 0x40B,  0x40F,  0x452, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014, 0xFFFD, 0x2122,
     0x459, 0x203A, 0x45A,  0x45C, 0x45B,  0x45F,  0xA0,   0x40E,  0x45E,  0x408,  0xA4,   0x490,  0xA6,
     0xA7,  0x401,  0xA9,   0x404, 0xAB,   0xAC,   0xAD,   0xAE,   0x407,  0xB0,   0xB1,   0x406,  0x456,
     0x491, 0xB5,   0xB6,   0xB7,  0x451,  0x2116, 0x454,  0xBB,   0x458,  0x405,  0x455,  0x457};
-/// 0x80 .. 0x9F of Windows-1252; the rest is as in Unicode.
+/// Characters 0x80 .. 0x9F of Windows-1252; all others equal Unicode.
 constexpr std::array<std::uint16_t, 32> k1252 = {
     0x20AC, 0xFFFD, 0x201A, 0x192,  0x201E, 0x2026, 0x2020, 0x2021, 0x2C6,  0x2030, 0x160,
     0x2039, 0x152,  0xFFFD, 0x17D,  0xFFFD, 0xFFFD, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
@@ -85,7 +85,7 @@ std::uint32_t from_1251(unsigned char c) {
 }
 std::uint32_t from_1252(unsigned char c) { return c >= 0x80 && c < 0xA0 ? k1252[c - 0x80U] : c; }
 
-/// Returns whether letters above 0xC0 are mostly adjacent, as in Cyrillic words; in western text they are
+/// Returns whether bytes from 0xC0 on are mostly adjacent, as in Cyrillic words. In western text they are
 /// isolated.
 bool is_cyrillic(std::string_view s) {
   std::size_t letters = 0, beside = 0;
@@ -118,7 +118,7 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
   if (ends_with(name, ".raw") || ends_with(name, ".dyr"))
     refuse("a case of PSS/E", name, "a record was asked for",
            "give the record as --records; swingbank plant makes a plant file of the case");
-  // A spreadsheet is a zip file that contains xl/ (Excel) or begins with its type (LibreOffice).
+  // A spreadsheet is a zip file that contains xl/ (Excel) or begins with its media type (LibreOffice).
   const std::string_view begin = bytes.substr(0, 4096);
   const bool sheet = begin.find("xl/") != std::string_view::npos ||
                      begin.find("[Content_Types].xml") != std::string_view::npos ||

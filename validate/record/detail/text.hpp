@@ -6,12 +6,12 @@
 
 namespace swingbank::validate::record {
 
-/// Throws InputError if the bytes are no readable text. It names their format (UTF-16, a spreadsheet, a zip,
-/// a plant file, an output file of a simulator, …) and how to export it.
+/// Throws InputError if the bytes are not readable text. The error names their format (UTF-16, a spreadsheet,
+/// a zip, a plant file, an output file of a simulator, …) and explains how to export a record.
 void refuse_binary(std::string_view bytes, const std::string& name);
 
-/// Returns the text as UTF-8. Other encodings are interpreted as Windows-1251 if most letters are Cyrillic in
-/// it, else for Windows-1252; `notes` reports which.
+/// Returns the text as UTF-8. Other encodings are interpreted as Windows-1251 if letters beyond ASCII are
+/// mostly adjacent, as in Cyrillic words, otherwise as Windows-1252. `notes` reports the choice.
 std::string as_utf8(std::string_view text, std::vector<std::string>& notes);
 
 }  // namespace swingbank::validate::record

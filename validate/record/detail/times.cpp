@@ -24,14 +24,14 @@ std::vector<double> steps_of(const std::vector<double>& t) {
 /// contains an invalid time.
 constexpr std::size_t kMostSamples = 2'000'000;
 
-/// Coarsest rounding of times, as a fraction of a step, at which a lost frame is recognised.
+/// Coarsest rounding of times at which a lost frame is recognised, as a fraction of a step.
 constexpr double kCoarsest = 0.75;
 
-/// Largest distance of a row off the grid from the row before [steps].
+/// Largest backward step to a row off the grid, as a fraction of a step.
 constexpr double kFarBack = 0.98;
 
-/// Maximum number of consecutive rows at one time, and share of repeated rows. A simulation writes a time two
-/// or three times at a switching; more result from a clock that stopped.
+/// Maximum number of consecutive rows at one time, and maximum share of repeated rows. A simulation writes a
+/// time two or three times at a switching; more repetitions indicate a stopped clock.
 constexpr std::size_t kMostAtOneTime = 3;
 constexpr double kMostRepeated = 0.05;
 
@@ -42,7 +42,7 @@ bool is_even(const std::vector<double>& t) {
          std::ranges::all_of(steps, [&](double s) { return std::abs(s - usual) <= 0.01 * usual; });
 }
 
-/// Puts times rounded to `resolution` on a uniform grid if all of them fit one.
+/// Replaces times rounded to `resolution` by a uniform grid, if all of them fit one.
 bool snap(std::vector<double>& t, double resolution, Record& about) {
   const auto last = static_cast<double>(t.size() - 1);
   double h = (t.back() - t.front()) / last;
@@ -65,8 +65,8 @@ bool snap(std::vector<double>& t, double resolution, Record& about) {
   return true;
 }
 
-/// Corrects at most three adjustments of a clock (set back, or changed to another hour) between continuous
-/// samples. Possible gaps and rows out of order are left unchanged.
+/// Corrects at most three adjustments of a clock between continuous samples: set back by up to 1.5 s, or
+/// changed by half hours. Possible gaps and rows out of order are left unchanged.
 void unleap(std::vector<double>& t, const SampleFaults& faults, std::vector<std::string>& notes) {
   constexpr double kSeconds = 1.5, kHalfHour = 1800;
   const std::vector<double> steps = steps_of(t);
@@ -136,13 +136,14 @@ class Grid {
  private:
   [[nodiscard]] bool coarse() const { return rows_.resolution > 0.15 * h_; }
 
-  /// Leaves out a row off the grid; returns false beyond one in a hundred, or two in a short record.
+  /// Leaves out a row off the grid. Returns false if more than 1 % of the rows, and more than two, are left
+  /// out.
   [[nodiscard]] bool leave_out(std::size_t row) {
     off_.push_back(row);
     return off_.size() <= std::max<std::size_t>(2, t_.size() / 100);
   }
 
-  /// Assigns the rows; returns false if they do not fit such a grid.
+  /// Assigns the rows to grid points. Returns false if they do not fit a grid with this step.
   bool count(std::size_t first) {
     row_ = {first}, index_ = {0}, moved_ = {0};
     for (std::size_t k = 0; k < first; ++k)
@@ -214,12 +215,12 @@ class Grid {
   const Rows& rows_;
   const std::vector<double>& t_;
   double h_;
-  std::vector<std::size_t> row_, index_;  ///< rows on the grid, and their places
-  std::vector<char> moved_;               ///< for each row on the grid: its stamp was corrected
+  std::vector<std::size_t> row_, index_;  ///< rows on the grid, and their grid points
+  std::vector<char> moved_;               ///< whether the stamp of each row on the grid was corrected
   std::vector<std::size_t> twice_, stuck_, off_;
 };
 
-/// Returns whether more than a fifth of the steps deviate by a tenth from the median.
+/// Returns whether more than a fifth of the steps deviate by more than a tenth from the median.
 bool differ(const std::vector<double>& steps) {
   const double usual = upper_median(steps);
   const auto off = std::ranges::count_if(steps, [&](double s) { return std::abs(s - usual) > 0.1 * usual; });
@@ -229,7 +230,8 @@ bool differ(const std::vector<double>& steps) {
 /// Rows that repeat the time of the row before: number, first one, longest run.
 struct RepeatedTimes {
   std::size_t rows = 0, first = 0, longest = 0;
-  /// The steps between different times are equal. A simulation's are not, and it repeats a time at an event.
+  /// Whether the steps between different times are equal. They are not in a simulation with variable steps,
+  /// which repeats a time at an event.
   bool even = true;
 };
 RepeatedTimes repeated_times(const std::vector<double>& t) {
@@ -247,7 +249,7 @@ RepeatedTimes repeated_times(const std::vector<double>& t) {
   return found;
 }
 
-/// Returns whether many steps differ, as in a simulation with variable steps.
+/// Returns whether the times do not decrease and many steps differ, as in a simulation with variable steps.
 bool varies(const std::vector<double>& t) {
   const std::vector<double> steps = steps_of(t);
   return std::ranges::none_of(steps, [](double s) { return s < 0; }) && differ(steps);
@@ -265,7 +267,7 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
                      static_cast<double>(clock.rows) > 2 + kMostRepeated * static_cast<double>(t.size())))
     return std::nullopt;
   const auto apart = static_cast<double>(std::ranges::count_if(steps, [](double s) { return s > 1e-6; }));
-  // A repeated time marks a step, which requires closer samples than slow movements.
+  // A repeated time marks a step of the values, which requires a higher rate than slow movements.
   const bool steps_up = std::ranges::any_of(steps, [](double s) { return s < 1e-6; });
   const double least = std::max(apart / length, steps_up ? 120.0 : 0.0);
   const auto* rate = std::ranges::find_if(kRates, [&](double r) { return r >= least; });
@@ -275,7 +277,7 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
   std::size_t k = 0;
   for (std::size_t i = 0; t.front() + static_cast<double>(i) * h <= t.back() + 1e-9; ++i) {
     const double at = std::min(t.front() + static_cast<double>(i) * h, t.back());
-    while (k + 2 < t.size() && t[k + 1] < at - 1e-9) ++k;  // a sample at a repeated time counts as before it
+    while (k + 2 < t.size() && t[k + 1] < at - 1e-9) ++k;  // at a repeated time, the value before the step
     const double part = t[k + 1] > t[k] ? std::clamp((at - t[k]) / (t[k + 1] - t[k]), 0.0, 1.0) : 0.0;
     even.t.push_back(t.front() + static_cast<double>(i) * h);
     even.place.push_back(static_cast<double>(k) + part);
@@ -288,13 +290,13 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
   return even;
 }
 
-/// Reports times shared by many samples as one fault; returns whether there are any.
+/// Reports times shared by many samples as one fault. Returns whether there are any.
 bool report_repeated_times(const Rows& rows, SampleFaults& faults) {
   const std::vector<double>& t = rows.t;
   const RepeatedTimes clock = repeated_times(t);
   if (!clock.even || (clock.longest < kMostAtOneTime && 5 * clock.rows < t.size())) return false;
   const double length = t.back() - t.front();
-  // Rounding repeats times throughout the record; a stopped clock does so once.
+  // Rounding repeats times throughout the record; a stopped clock repeats one time.
   const auto apart = static_cast<double>(t.size() - clock.rows);
   const bool rounded = clock.longest < t.size() / 4 || !(length > 0);
   const std::string what =
@@ -329,7 +331,7 @@ void report_uneven_steps(const Rows& rows, SampleFaults& faults) {
   const bool rounded = resolution > 0 && resolution <= 0.15 * usual;
   const double slack = std::max(0.01 * usual, rounded ? 2.1 * resolution : 0.0);
   for (std::size_t k = 0; k < steps.size(); ++k) {
-    if (!std::isfinite(steps[k])) continue;  // already reported as a value
+    if (!std::isfinite(steps[k])) continue;  // already reported as an invalid value
     if (steps[k] < 0 || (steps[k] == 0 && !repeated)) {
       faults.add(steps[k] == 0 ? "repeated" : "backwards",
                  fmt::format("t = {:.10g} s after t = {:.10g} s", t[k + 1], t[k]), k + 1,

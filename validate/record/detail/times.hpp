@@ -13,7 +13,7 @@ namespace swingbank::validate::record {
 struct Rows {
   const std::vector<double>& t;  ///< [s]
   double resolution = 0;         ///< rounding of t [s]; 0: not known
-  bool uneven = false;           ///< arbitrary sample times are intended, linear between samples
+  bool uneven = false;           ///< sample times are arbitrary, and values are linear between samples
   std::function<bool(std::size_t, std::size_t)> same;  ///< whether two rows hold the same values
 };
 /// Evenly spaced times, and the row of each: fractional between two rows, NaN if no row was recorded.
@@ -22,11 +22,11 @@ struct EvenRows {
   std::vector<double> place;
 };
 
-/// Returns the uniform grid of the rows' times, which must increase by a constant step. 1 % tolerance covers
-/// rounding to 0.1 ms at 120 samples/s; times rounded more coarsely (`resolution`, at most 0.75 of a step)
-/// that fit a uniform grid are put on it. Repaired and noted in about.notes: missing frames, repeated stamps,
-/// clock adjustments of seconds or an hour, and a few rows between the samples, which are left out. Variable
-/// steps, as of some simulations, become even ones. Everything else is a fault.
+/// Returns the uniform grid of the rows' times, which must increase by a constant step within 1 %. The
+/// tolerance covers rounding to 0.1 ms at 120 samples/s. Times rounded more coarsely (`resolution`, at most
+/// 0.75 of a step) are replaced by a uniform grid, if they fit one. Missing frames, repeated stamps, clock
+/// adjustments of up to 1.5 s or of half hours, and a few rows between the samples are repaired and noted in
+/// about.notes. Rows with the variable steps of a simulation are resampled. Everything else is a fault.
 EvenRows settle_rows(const Rows& rows, Record& about, SampleFaults& faults);
 
 }  // namespace swingbank::validate::record

@@ -129,7 +129,7 @@ std::optional<Unit> find_unit(std::string_view text) {
 bool is_unit(std::string_view text) { return find_unit(text).has_value(); }
 
 std::string normalised(std::string_view text) {
-  // Letters with accents from U+00C0 on; a blank marks characters without a plain form.
+  // Plain forms of the accented letters from U+00C0 on; a blank marks characters without a plain form.
   constexpr std::string_view plain = "aaaaaaaceeeeiiiidnooooo ouuuuypsaaaaaaaceeeeiiiidnooooo ouuuuypy";
   std::string name;
   for (std::size_t i = 0; i < text.size(); ++i) {

@@ -8,8 +8,8 @@ namespace swingbank::validate::record {
 
 enum class Quantity { time, V, theta, f, P, Q, speed, Efd, Ifd, I, phi, Vs, Vref, Pm, Pref, gate };
 constexpr int kQuantities = 16;
-/// Returns whether only components use the quantity, as an input or for comparison; other records ignore its
-/// column.
+/// Returns whether only records of a component (exciter, governor) use the quantity. Records of a plant
+/// ignore its column.
 constexpr bool is_inner(Quantity q) { return q >= Quantity::Vs; }
 enum class Unit {
   second,
@@ -40,8 +40,8 @@ enum class Unit {
   ampere
 };
 
-/// Parses a unit with optional qualifiers: "kV L-L", "kV_ln", "pu, pos. seq.", "ms since epoch". None: no
-/// unit, or unknown qualifiers ("kV peak").
+/// Parses a unit with optional qualifiers: "kV L-L", "kV_ln", "pu, pos. seq.", "ms since epoch". Returns no
+/// value if the text is not a unit or contains an unknown qualifier ("kV peak").
 std::optional<Unit> find_unit(std::string_view text);
 /// Returns whether the text is a known unit ("kV", "deg.", "p.u.").
 bool is_unit(std::string_view text);
@@ -54,8 +54,8 @@ bool is_clock_word(std::string_view text);
 
 /// Returns whether the quantity in that unit requires base.kv.
 bool needs_kv(Quantity quantity, Unit unit);
-/// Returns the key under [record] of the plant file that the quantity in that unit requires: "efd_base";
-/// empty: none.
+/// Returns the key under [record] of the plant file that the quantity in that unit requires, such as
+/// "efd_base"; empty if it requires none.
 std::string_view needs_base(Quantity quantity, Unit unit);
 
 /// Returns the text for comparison of names: lower case without accents, letters and digits only ("°" counts

@@ -44,7 +44,7 @@ struct Named {
   Phase phase;
   std::string circuit;
 };
-/// Returns the circuit: all words except those from `first` to before `end`, which `rest` replaces.
+/// Returns the circuit: all words, with those from `first` to `end` - 1 replaced by `rest`.
 std::string other_words(const NameParts& words, std::size_t first, std::size_t end,
                         const std::string& rest = {}) {
   std::string all;
@@ -61,8 +61,8 @@ bool is_of_phasors(const std::string& word) {
 }
 
 /// Finds phase and circuit in a channel's name: "VA_G1", "G1 VA", "G1-V-A", "VA1", "G1VA". If the phase is
-/// `known`, only this one is accepted. Numeric phases ("V1", possibly the positive sequence) must form a
-/// separate word.
+/// `known`, only this phase is accepted. If it is not, a numeric phase is accepted only in a name of one
+/// word, because "V1" beside other words may be the positive sequence.
 std::optional<Named> named_in(std::string_view id, bool voltage, const std::optional<Phase>& known) {
   const NameParts words = parts_of_name(id);
   const std::size_t n = words.lower.size();
@@ -102,7 +102,7 @@ std::optional<Named> named_in(std::string_view id, bool voltage, const std::opti
   return std::nullopt;
 }
 
-/// Waves by phase, of one circuit or, without a name, of all.
+/// Waves by phase, of one circuit or, if `circuit` is null, of all circuits.
 struct Found {
   std::vector<const Wave*> phases[3], pairs[3];
 };
@@ -114,8 +114,8 @@ Found found_in(const std::vector<Wave>& waves, bool voltage, const std::string* 
   return found;
 }
 
-/// Returns a set of three waves, or of two that determine the third: always for line-to-line voltages, for
-/// currents if no phase is recorded twice. None if one is missing or occurs twice.
+/// Returns a set of three waves, or of two if `two_are_enough` to determine the third. None if waves are
+/// missing or a phase occurs twice.
 std::optional<WaveSet> set_of(const std::vector<const Wave*> (&of)[3], bool two_are_enough, bool between,
                               const std::string& circuit) {
   WaveSet set{{}, between, circuit};
@@ -159,7 +159,7 @@ std::optional<WaveSet> choose_waves(const std::vector<Wave>& waves, bool voltage
   const char* const kind = voltage ? "voltage" : "current";
   const std::string asked = normalised(options.terminal);
   std::set<std::string> circuits;
-  bool incomplete = false;  // the requested circuit
+  bool incomplete = false;  // whether the requested circuit is incomplete
   for (const Wave& w : waves)
     if (w.voltage == voltage) circuits.insert(w.circuit);
   std::vector<WaveSet> sets;
@@ -171,7 +171,7 @@ std::optional<WaveSet> choose_waves(const std::vector<Wave>& waves, bool voltage
     incomplete = incomplete || wanted;
   }
   if (incomplete) sets.clear();
-  // Three phases have priority over two of another circuit, whose third is only inferred.
+  // Three phases have priority over two of another circuit, whose third phase is only inferred.
   const auto whole = [](const WaveSet& s) { return std::ranges::count(s.waves, nullptr) == 0; };
   if (std::ranges::any_of(sets, whole)) std::erase_if(sets, [&](const WaveSet& s) { return !whole(s); });
   if (sets.empty() && !incomplete)

@@ -21,7 +21,7 @@ struct Wave {
                         ///< without quantity and phase
   double scale;         ///< factor to kV or kA
 };
-/// Returns the channel as a voltage or current with known unit and phase.
+/// Returns the channel as a voltage or current; none if its unit or phase is unknown.
 std::optional<Wave> wave_of(const ComtradeChannel& channel);
 
 /// Three phase waveforms from which the positive-sequence component is computed. One may be absent; it is
@@ -32,8 +32,8 @@ struct WaveSet {
   std::string circuit;
 };
 
-/// Returns the only complete set of voltages or currents, or that of the requested circuit. Adds a problem if
-/// there are none or several.
+/// Returns the complete set of voltages or currents of the requested circuit, or the only complete set. Adds
+/// a problem if there is none, or if there are several.
 std::optional<WaveSet> choose_waves(const std::vector<Wave>& waves, bool voltage, const ReadOptions& options,
                                     const std::string& where, Problems& problems);
 
