@@ -9,7 +9,7 @@ namespace swingbank::validate::reduced {
 /// Linearised events of a plant, with their states eliminated.
 class ClosedLoop {
  public:
-  /// Takes an inference without free inputs. `events` must outlive it.
+  /// Takes an inference without free inputs. `events` must outlive this object.
   ClosedLoop(Inference inference, const noise::WhitenedEvents& events);
   /// One event.
   struct Event {
@@ -39,7 +39,7 @@ class ClosedLoop {
 /// Cost of a trial in closed loop: its responses are changes of the residuals [row of all events].
 class ClosedLoopCost : public ReducedCost {
  public:
-  /// `held` as in ReducedPlant. `plant` must outlive it. `conventions` are those of the trial.
+  /// `held` as in ReducedPlant. `plant` must outlive this object. `conventions` are those of the trial.
   ClosedLoopCost(const ClosedLoop& plant, const sim::Conventions& conventions, const std::vector<char>& held);
 
   [[nodiscard]] const Inference& inference() const override { return plant_.inference(); }

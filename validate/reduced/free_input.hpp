@@ -1,7 +1,7 @@
 #pragma once
-// A torque or a field voltage that is free in time in addition to a model. Which of the two explains the
-// records shows on which side of the machine an effect is missing. Its time series is reported, and
-// user-defined models are regressed on it.
+// A torque or a field voltage that is a free function of time in addition to a model. If a free torque
+// explains the records, a mechanical effect is missing; if a free field voltage does, an effect of the
+// excitation. The input's time series is reported, and user-defined models are fitted to it by regression.
 #include <memory>
 
 #include "validate/reduced/infer.hpp"
@@ -11,14 +11,14 @@ namespace swingbank::validate::reduced {
 /// An inferred input with its evidence.
 struct FreeInput {
   event::InputKind kind = event::InputKind::none;  ///< torque or field voltage
-  /// Fit of the plant with the input, which the events' states hold; without parameters. `failed`: the plant
-  /// cannot be simulated.
+  /// Fit of the plant with the input, without the free parameters. The events' states contain the input.
+  /// `failed` is set if the plant cannot be simulated.
   fit::Fit fit;
   std::vector<Eigen::VectorXd> deviation;  ///< posterior standard deviation of the input [event][knot] [pu]
   /// 2 ln(Bayes factor) over the model without the input, by Laplace's approximation, at the most probable
   /// intensity of the input's random walk. Noise alone gave -3 to 6 in six cases.
   double evidence = 0;
-  std::shared_ptr<const Inference> inference;  ///< at the prior intensity
+  std::shared_ptr<const Inference> inference;  ///< inference at the prior intensity
 
   /// Reduced chi-square; infinite if the plant cannot be simulated.
   [[nodiscard]] double reduced_chi2() const;
@@ -28,9 +28,9 @@ struct FreeInput {
   }
 };
 
-/// Infers the input. `without`: the fit of the tested plant without it. The inference begins at this fit if
-/// its reduced chi-square is below thresholds::noise.measurable. Otherwise its parameters are biased, and the
-/// inference begins at the submitted values.
+/// Infers the input. `without`: the fit of the tested plant without the input. The inference begins at this
+/// fit if its reduced chi-square is below thresholds::noise.measurable. Otherwise the fitted parameters are
+/// biased, and the inference begins at the submitted values.
 FreeInput free_input(event::InputKind kind, const sim::plant::PlantUnderTest& tested,
                      const noise::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                      const fit::Fit& without, int threads);

@@ -16,20 +16,21 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kDifference = 1e-3;  ///< finite difference on an axis, for Jacobians
-/// Maximum number of rounds of draws until half as many act as one round has.
+/// Maximum number of rounds of draws. Drawing ends earlier when the acting draws reach half the size of a
+/// round.
 constexpr int kRoundsOfDraws = 20;
-/// Share of acting draws below which they are evolved.
+/// Share of acting draws below which differential evolution improves them.
 constexpr double kRare = 0.1;
-/// Differential evolution: number of generations without a lower cost that end it, and minimum number of
-/// starts.
+/// Differential evolution: it ends after kStagnant generations without a lower cost, and requires
+/// kMinimumToEvolve starts.
 constexpr int kStagnant = 50;
 constexpr std::size_t kMinimumToEvolve = 8;
-/// Moves lead toward this share of the starts, the best, change this share of the parameters, and have a
-/// random length of at least `kShortestMove` (Zhang and Sanderson 2009).
+/// Differential evolution: share of the starts, the best, toward which a start moves; share of the parameters
+/// that a move changes; minimum of its random relative length (Zhang and Sanderson 2009).
 constexpr double kShareOfBest = 0.15, kShareMoved = 0.9, kShortestMove = 0.4;
 /// First stream of the random numbers of the evolution, beyond those of the draws.
 constexpr std::uint32_t kStreamsOfEvolution = 1u << 20;
-constexpr double kShortestTime = 0.2;   ///< of a time constant, in sampling intervals
+constexpr double kShortestTime = 0.2;   ///< lower bound of a time constant, in sampling intervals
 constexpr double kStartSettled = 0.02;  ///< cost reduction of a step below which a start has converged
 constexpr double kGivenUp = 1e6;        ///< damping factor at which a start is given up
 constexpr std::size_t kLastStarts = 2;  ///< number of starts that are optimised to the end
@@ -62,11 +63,11 @@ class Identifying {
   struct Start {
     VectorXd z;
     double gain = 0, cost = std::numeric_limits<double>::infinity(), damping = 1e-2;
-    std::size_t from = 0;  ///< number of its point
+    std::size_t from = 0;  ///< index of its point
     bool done = false;
   };
   /// Optimises the starts by successive halving: every start takes `steps` steps, then the better half takes
-  /// twice as many, and so on.
+  /// twice as many steps, and so on.
   void optimise(int steps) {
     for (;; steps *= 2) {
       for (int step = 0; step < steps; ++step) {
@@ -78,7 +79,7 @@ class Identifying {
       starts_.resize((starts_.size() + 1) / 2);
     }
   }
-  /// Returns the points with a finite cost.
+  /// Returns starts at the points with a finite cost.
   [[nodiscard]] std::vector<Start> starts_at(const std::vector<VectorXd>& points) const {
     const VectorXd cost = costs(responses(points), points, VectorXd::Zero(static_cast<Index>(points.size())));
     std::vector<Start> all;
@@ -114,8 +115,8 @@ class Identifying {
         cost += std::pow(z[static_cast<Index>(i)] / prior_sd, 2);
     return cost;
   }
-  /// Returns the costs; infinite for a trial that cannot be simulated, and for an idle one, which changes
-  /// nothing: its cost has no gradient, and as a start it would displace starts that act.
+  /// Returns the costs; infinite if the trial cannot be simulated or has no response. Without a response the
+  /// cost has no gradient, and such a start would displace starts that act.
   [[nodiscard]] VectorXd costs(const MatrixXd& made, const std::vector<VectorXd>& all,
                                const VectorXd& gains) const {
     VectorXd cost = reduced_.costs(made, gains);
@@ -139,9 +140,9 @@ class Identifying {
     for (std::size_t i = 0; i < axes_.size(); ++i) z[static_cast<Index>(i)] = axes_[i].z(values[i]);
     return within(z);
   }
-  /// Draws until enough draws act, and keeps the best. Most exciters act with every draw. A limiter acts only
-  /// if its pickup level lies between the steady value and the peak of its signal; the few draws that meet
-  /// this are evolved.
+  /// Draws until enough draws act, that is, have a response, and keeps the best. Most exciters act with every
+  /// draw. A limiter acts only if its pickup level lies between the steady value and the peak of its signal.
+  /// Few draws meet this condition, and differential evolution improves them.
   void begin(const IdentifyOptions& options, const std::vector<std::vector<double>>& known) {
     std::vector<VectorXd> points{VectorXd::Zero(static_cast<Index>(axes_.size()))};
     for (const auto& values : known) points.push_back(point_of(values));
@@ -166,8 +167,8 @@ class Identifying {
     std::ranges::copy(given, std::back_inserter(starts_));  // given starts are always optimised
   }
   /// Improves the starts by differential evolution (Storn and Price 1997): each start moves toward one of the
-  /// best and by the difference of two others, and keeps the move if its cost falls. Unlike gradient steps it
-  /// crosses the discontinuities at which another event makes a limiter pick up.
+  /// best and by the difference of two others, and keeps the move if its cost falls. Unlike gradient steps,
+  /// it crosses discontinuities of the cost, where a limiter begins to pick up in another event.
   void evolve() {
     if (starts_.size() < kMinimumToEvolve) return;
     double least = std::numeric_limits<double>::infinity();

@@ -16,18 +16,20 @@ using Kind = playin::SensitivityParameter::Kind;
 using detail::Normal, detail::Point;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Maximum number of intensities of the inputs' random walk besides the prior's; the difference of two
-/// logarithms below which intensities are equal; and the maximum factor between consecutive intensities, for
-/// residuals that are nonlinear and linear in the inputs.
+/// Maximum number of intensities of the inputs' random walk, besides the prior intensity.
 constexpr int kIntensities = 5;
-constexpr double kSameIntensity = 0.7;  // of the logarithm
+constexpr double kSameIntensity =
+    0.7;  ///< difference of logarithms below which two intensities count as equal
+/// Maximum factor between consecutive intensities: for residuals that are nonlinear, and linear, in the
+/// inputs.
 constexpr double kNearIntensity = 100, kAnyIntensity = 1e12;
-/// Knots are one sample apart for this long after a switching time; then their spacing grows.
-constexpr double kCloseKnots = 0.25, kKnotGrowth = 1.15, kFarApart = 0.15;  // [s], factor, [s]
-constexpr double kMostKnots = 100;                                          ///< in the part with wide spacing
+/// Knots are one sample apart until kCloseKnots [s] after a switching time. Then their spacing grows by the
+/// factor kKnotGrowth from knot to knot, up to kFarApart [s].
+constexpr double kCloseKnots = 0.25, kKnotGrowth = 1.15, kFarApart = 0.15;
+constexpr double kMostKnots = 100;  ///< maximum number of widely spaced knots in a long record
 
-/// Prior standard deviation of an input at the first switching time, and of the field
-/// voltage's jump at later ones [pu]. A turbine's torque does not jump; a rectifier's voltage may.
+/// Prior standard deviation of an input at the first switching time, and of the field voltage's step at later
+/// switching times [pu]. A turbine's torque is continuous; a rectifier's voltage may have a step.
 constexpr double kFirstTorque = 1e-3, kFirstField = 10.0;
 
 Knots knots_of(const event::FitEvent& event, const event::EventState& state) {
@@ -132,7 +134,8 @@ class Inferring {
   [[nodiscard]] double most_probable_intensity(const Inference& about) const {
     constexpr double kLeastIntensity = 1e-10, kMostIntensity = 1e2, kIntensityFactor = 3.0;
     Normal data = without_walks(about.events, axes_, at_, events_);
-    Point none = at_;  // inputs of zero, where the walk has no cost; avoids cancellation of large numbers
+    Point none =
+        at_;  // with inputs of zero, whose walk has no cost: avoids the cancellation of large numbers
     for (std::size_t e = 0; e < events_.size(); ++e) {
       const Index states = at_.states[e].size(), inputs = data.own[e].rows() - states;
       VectorXd input(inputs);
@@ -198,7 +201,7 @@ class Inferring {
     add_walks(sensitivities, at_, intensity_, normal);
     return normal;
   }
-  /// Returns the values of an input that is given on the same knots; otherwise zeros.
+  /// Returns the values of an input that has as many knots; otherwise zeros.
   [[nodiscard]] static VectorXd at_knots(const playin::PiecewiseLinear& input, const Knots& knots) {
     if (input.t.size() != knots.t.size()) return VectorXd::Zero(static_cast<Index>(knots.t.size()));
     return Eigen::Map<const VectorXd>(input.value.data(), static_cast<Index>(input.value.size()));
@@ -216,7 +219,7 @@ class Inferring {
     if (inputs_.field) s.field = {knots.t, {p.fields[e].begin(), p.fields[e].end()}};
     return s;
   }
-  /// Returns the knots with those at switching times moved along.
+  /// Returns the knots; those at switching times are moved to the times of the state.
   [[nodiscard]] Knots knots_of_moved(std::size_t e, const event::EventState& s) const {
     Knots knots = knots_[e];
     if (s.switchings.empty()) return knots;
@@ -359,7 +362,7 @@ class Inferring {
 }  // namespace
 
 std::vector<double> own_priors(const event::FitEvent& event) {
-  constexpr double kKnown = 1e-6;  // of the units
+  constexpr double kKnown = 1e-6;  // prior standard deviation of a known switching time, in its unit
   std::vector<double> priors = fit::state_priors(event);
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     priors[k] = std::max(kKnown, event.switchings[k].uncertainty / fit::kSwitchScale);
@@ -376,7 +379,7 @@ void keep_in_range(const event::FitEvent& event, VectorXd& state) {
 
 Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind) {
   const bool torque = kind == event::InputKind::torque;
-  constexpr double kLeastGap = 1e-6;  // [s]: a torque does not jump
+  constexpr double kLeastGap = 1e-6;  // [s]; keeps a torque continuous at a switching time
   VectorXd weight(static_cast<Index>(knots.t.size()));
   weight[0] = 1 / (torque ? kFirstTorque : kFirstField);
   for (Index k = 1; k < weight.size(); ++k) {

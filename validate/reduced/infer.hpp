@@ -11,8 +11,8 @@
 
 namespace swingbank::validate::reduced {
 
-/// Knots of an event's piecewise linear inputs. An input may jump at each switching time after the first,
-/// where two knots lie one nanosecond apart.
+/// Knots of an event's piecewise linear inputs. An input may have a step at each switching time after the
+/// first, where two knots lie one nanosecond apart.
 struct Knots {
   std::vector<double> t;                     ///< [s]
   std::vector<std::size_t> discontinuities;  ///< index of the first knot of each such pair
@@ -42,9 +42,9 @@ struct Inference {
   /// `base`: the submitted plant with the estimated values. `plant`: the simulated plant, which may have an
   /// additional block.
   sim::plant::Plant base, plant;           ///< submitted and simulated plant
-  std::vector<fit::FreeParameter> free;    ///< of `base`
-  Eigen::VectorXd offset;                  ///< of the free parameters from their prior means, on their axes
-  std::vector<event::EventState> states;   ///< including both inputs
+  std::vector<fit::FreeParameter> free;    ///< free parameters of `base`
+  Eigen::VectorXd offset;                  ///< free parameters minus their prior means, on their axes
+  std::vector<event::EventState> states;   ///< states of the events, including both inputs
   std::vector<EventSensitivities> events;  ///< residuals and Jacobians of the events
   noise::NoiseModel noise;                 ///< noise model of the residuals
   double chi2 = 0;                         ///< sum of squared whitened residuals
@@ -56,8 +56,8 @@ struct Inference {
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
-/// A change of the simulated plant outside its free parameters: a parameter at its null value, an error of an
-/// instrument.
+/// A change of the simulated plant outside its free parameters: of a parameter at its null value, or an error
+/// of an instrument.
 struct Change {
   sim::plant::Plant from, to;  ///< plant before and after the change
 };
@@ -67,13 +67,13 @@ void add_changes(Inference& inference, const noise::WhitenedEvents& events,
                  const sim::Conventions& conventions, std::span<const Change> changes, int threads);
 
 /// Prior variance rate of an input's random walk [pu^2/s]. A field voltage may run from one ceiling to the
-/// other within a second; a turbine's power changes by a tenth of its rating in that time.
+/// other within a second; a turbine's power changes by about a tenth of its rating in a second.
 inline constexpr double kFieldWalk = 1.0, kTorqueWalk = 0.01;  ///< field voltage; torque
 /// Returns the square root of the prior precision of each knot given the previous knot [1/pu].
 Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind);
 
 /// Returns the prior standard deviation of each variable of an event's state, in its units. For a switching
-/// time it is the uncertainty.
+/// time it is the uncertainty of that time.
 std::vector<double> own_priors(const event::FitEvent& event);
 /// Clamps the switching times of an event's state to their uncertainties.
 void keep_in_range(const event::FitEvent& event, Eigen::VectorXd& state);
@@ -89,9 +89,9 @@ Inference infer(const sim::plant::PlantUnderTest& tested, const noise::WhitenedE
 struct SmoothInference {
   Inference prior, smooth;  ///< at the prior intensity, and at the most probable one
 };
-/// Computes both inferences. `from`: a fit of the tested plant without inputs whose residuals are nearly
-/// linear in the inputs; the first inference is then the linearisation at this fit. Null: both start at the
-/// submitted values. Throws as infer().
+/// Computes both inferences. `from`: a fit of the tested plant without inputs, near which the residuals are
+/// almost linear in the inputs. The first inference is then the linearisation at this fit. If `from` is null,
+/// the first inference starts at the submitted values. Throws as infer().
 SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                              const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
                              const fit::Fit* from);

@@ -3,7 +3,7 @@
 // the residuals of an event are linear in the plant's parameters, the event's state, torque and field
 // voltage. A QR decomposition eliminates the event's state. The remaining cost of any time series u(t) of one
 // input, whichever block generates it, is minimised over the plant's parameters d:
-//   |r + T d + L g u|^2 + |(offset + d) / spread|^2
+//   |r + T d + L g u|^2 + |(offset + d) / prior_sd|^2
 // One parameter, d_g, also scales the effect of the input, because a machine's state follows it at the rate
 // 1/T'do (field voltage) or 1/2H (torque). This factor stays explicit: g = exp(exponent d_g).
 #include <Eigen/SparseCore>
@@ -25,7 +25,7 @@ class Reduction {
   [[nodiscard]] const sim::Conventions& conventions() const { return conventions_; }
   /// One event.
   struct Event {
-    playin::OpenLoop loop;  ///< of the plant's controls
+    playin::OpenLoop loop;  ///< open loop of the plant's controls
     /// Mean over each knot's hat function: [knot][time point].
     Eigen::SparseMatrix<double, Eigen::RowMajor> over_hats;
     /// Triangular factor with columns [plant | changes | torque | field | residual without either input],
@@ -80,7 +80,7 @@ class ReducedPlant : public ReducedCost {
  public:
   /// The other input stays free if the reduction contains it. `held` marks plant parameters that are fixed
   /// because their blocks are absent; empty: none. Only the changes in `freed` are free. The reduction must
-  /// outlive it.
+  /// outlive this object.
   ReducedPlant(const Reduction& reduction, event::InputKind kind, const std::vector<char>& held = {},
                const std::vector<Eigen::Index>& freed = {});
 

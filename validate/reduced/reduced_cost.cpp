@@ -51,8 +51,8 @@ void ReducedCost::eliminate(const Inference& at, Gain gain, const std::vector<ch
 void ReducedCost::finish() {
   MatrixXd curvature = precision_.asDiagonal();
   for (const Event& e : events_) curvature += e.T.transpose() * e.T;
-  for (Index k = 0; k < precision_.size();
-       ++k)  // a change has a weak prior, which matters for collinear columns
+  // A change has a weak prior, which matters only if columns are collinear.
+  for (Index k = 0; k < precision_.size(); ++k)
     if (free_[static_cast<std::size_t>(k)] >= numbers_) curvature(k, k) *= 1 + kChangePrecision;
   inverse_ = curvature.ldlt().solve(MatrixXd::Identity(curvature.rows(), curvature.rows()));
 }

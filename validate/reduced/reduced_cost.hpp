@@ -1,7 +1,7 @@
 #pragma once
 // Cost of a change of the plant near a point at which its residuals were linearised, with all other unknowns
-// eliminated. A trial's response u is the change that its block makes; the rest is linear:
-//   |r + T d + L g u|^2 + |(offset + d) / spread|^2
+// eliminated. The response u of a trial is the change that its block causes. All other unknowns d are linear:
+//   |r + T d + L g u|^2 + |(offset + d) / prior_sd|^2
 #include "validate/reduced/infer.hpp"
 
 namespace swingbank::validate::reduced {
@@ -22,11 +22,11 @@ class ReducedCost {
   /// Returns the responses of plants with equal blocks: [row of all events][plant]. A column is not finite if
   /// the plant cannot be simulated.
   [[nodiscard]] virtual Eigen::MatrixXd responses(const std::vector<sim::plant::Plant>& plants) const = 0;
-  /// Returns whether a response [row of all events] is more than the numerical error of none.
+  /// Returns whether a response [row of all events] exceeds the numerical error of a zero response.
   [[nodiscard]] virtual bool acts(const Eigen::VectorXd& response) const = 0;
 
-  /// Returns the cost of each response, [row of all events][response], each with its change of the gain's
-  /// parameter.
+  /// Returns the cost of each response. `responses`: [row of all events][response]; `gains`: change of the
+  /// gain's parameter for each response.
   [[nodiscard]] Eigen::VectorXd costs(const Eigen::MatrixXd& responses, const Eigen::VectorXd& gains) const;
   /// Half the gradient and half the Gauss-Newton Hessian of the cost of one response. The variables are the
   /// gain's parameter and the parameters of `jacobian` [row][parameter]; all other plant parameters are
@@ -38,7 +38,7 @@ class ReducedCost {
   /// Computes the quadratic model of the cost of one response. `gain`: change of the gain's parameter.
   [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& response, double gain,
                                     const Eigen::MatrixXd& jacobian) const;
-  /// Returns the changes of the plant parameters that minimise the cost of a response, without those of
+  /// Returns the changes of the plant parameters that minimise the cost of a response, without the columns of
   /// add_changes().
   [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& response, double gain) const;
   /// The plant parameter that scales the response, and its exponent.
@@ -54,16 +54,17 @@ class ReducedCost {
   struct Event {
     Eigen::VectorXd r, by_gain;  ///< residual without any response; its derivative by the gain's parameter
     Eigen::MatrixXd T;           ///< Jacobian by the eliminated parameters
-    Eigen::MatrixXd L;           ///< Jacobian by the response; empty: the response is a residual
+    Eigen::MatrixXd L;  ///< Jacobian by the response; empty: the response is a change of the residual
   };
-  /// Sets the eliminated parameters: those of `at` that are not `held`, then `freed`, and their prior.
+  /// Sets the eliminated parameters and their priors: the parameters of `at` that are not `held`, then the
+  /// changes `freed`.
   void eliminate(const Inference& at, Gain gain, const std::vector<char>& held,
                  const std::vector<Eigen::Index>& freed = {});
   /// Returns the columns of the eliminated parameters among all, [plant | changes].
   [[nodiscard]] const std::vector<Eigen::Index>& eliminated() const { return free_; }
   /// Adds an event whose T has the eliminated parameters' columns.
   void add(Event event) { events_.push_back(std::move(event)); }
-  /// Ends the construction.
+  /// Computes the inverse Hessian after the last add().
   void finish();
 
  private:

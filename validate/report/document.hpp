@@ -37,7 +37,7 @@ struct Table {
   bool sortable = false;                ///< a script lets the reader sort by a column and filter the rows
 };
 
-/// Role of a curve, which determines its colour and line: measured samples are points.
+/// Role of a curve, which determines its colour and line. Measured samples are drawn as points.
 enum class Ink { measured, submitted, fitted, refitted, inferred, limit };
 
 /// Chart of curves against time. Charts of the same group zoom together.
@@ -58,7 +58,7 @@ struct Curves {
   std::string id = {};   ///< target of links; empty: none
 };
 
-/// Horizontal bar chart with a reference line; NaN is shown as "missing".
+/// Horizontal bar chart with a reference line. NaN is shown as "not finite".
 struct Bars {
   std::string title, unit;      ///< title; unit of the values
   double reference = 0;         ///< position of the line, 0: none
@@ -66,7 +66,7 @@ struct Bars {
   /// One bar.
   struct Bar {
     std::string label;           ///< label to the left
-    double value;                ///< length of the bar [unit]; NaN: missing
+    double value;                ///< length of the bar [unit]; NaN: no bar
     std::string style = "good";  ///< colour: good, poor, before or after
     std::string shown = {};      ///< text beside the bar in place of the value
   };
@@ -90,7 +90,7 @@ struct Heading {
   std::string text;  ///< title
   int level = 2;     ///< as in HTML
 };
-/// Paragraph. A hint is for the screen only; a command is to be copied.
+/// Paragraph. A hint is shown on the screen only; a command is meant to be copied.
 struct Paragraph {
   /// Kinds of paragraphs.
   enum class Kind { plain, note, hint, command };
@@ -138,7 +138,7 @@ struct Facts {
 struct Data {
   std::string id, json;  ///< id of the element; content
 };
-/// Blank lines for name, date and signature of each role, on paper only.
+/// Blank lines for name, date and signature of each role, in print only.
 struct Signatures {
   std::vector<std::string> roles;  ///< "Owner", "Reviewer"
 };

@@ -43,18 +43,18 @@ std::string linked(const std::string& text, const std::string& link) {
   return link.empty() ? escape(text) : fmt::format("<a href=\"{}\">{}</a>", escape(link), escape(text));
 }
 
-/// Formats six significant digits: more than a screen resolves, and a third of the full size.
+/// Formats six significant digits, which is more than a screen resolves and a third of the full length.
 std::string number(double v) { return std::isfinite(v) ? fmt::format("{:.6g}", v) : "null"; }
 std::string column(const std::vector<double>& values) {
   std::string text;
   for (const double v : values) text += (text.empty() ? "[" : ",") + number(v);
   return text.empty() ? "[]" : text + "]";
 }
-/// Returns which times a chart shows at first: "t = 1 to 7 s of 0 to 15 s"; empty if it shows all. report.js
-/// follows the zoom.
+/// Returns the time range that a chart shows at first: "t = 1 to 7 s of 0 to 15 s"; empty if it shows all
+/// times. report.js updates it when the reader zooms.
 std::string shown_part(const Curves& c) {
   if (!c.view || c.x.empty() || (c.view->first <= c.x.front() && c.view->second >= c.x.back())) return {};
-  const double rounding = 1e-9 * (c.x.back() - c.x.front());  // of times that were subtracted
+  const double rounding = 1e-9 * (c.x.back() - c.x.front());  // rounding error of shifted times
   const double begin = std::abs(c.x.front()) < rounding ? 0.0 : c.x.front();
   return fmt::format("t = {:.4g} to {:.4g} s of {:.4g} to {:.4g} s", c.view->first, c.view->second, begin,
                      c.x.back());

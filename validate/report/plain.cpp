@@ -20,7 +20,9 @@ std::string markdown(const Document& document) {
       text += block.file.empty() ? "" : fmt::format("![{}]({})\n\n", block.caption, block.file);
     else if constexpr (std::is_same_v<B, Facts>)
       for (const auto& [name, value] : block.rows)
-        text += name == "command" ? "" : fmt::format("- {}: {}\n", name, value);  // it contains local paths
+        text += name == "command"
+                    ? ""
+                    : fmt::format("- {}: {}\n", name, value);  // the command contains local paths
     else if constexpr (std::is_same_v<B, Paragraph>)
       if (block.in_markdown) text += (block.kind == Paragraph::Kind::note ? "> " : "") + block.text + "\n\n";
   };

@@ -11,7 +11,7 @@
 namespace swingbank::validate::report {
 namespace {
 
-constexpr double kRow = 26, kPlotHeight = 270;  // of the plots' areas [px]
+constexpr double kRow = 26, kPlotHeight = 270;  // height of a named row, and of the area without rows [px]
 constexpr double kPlotTop = 52, kPlotBottom = 42, kPlotRight = 24, kGap = 12, kLegendLine = 20, kLetter = 6.7;
 constexpr const char *kInk = "#1b2733", *kSoft = "#5b6b7b", *kGrid = "#e4e9ee", *kFrame = "#c9d3dc";
 

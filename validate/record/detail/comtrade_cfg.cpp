@@ -186,8 +186,8 @@ class Config {
     const std::string_view first = comtrade_line(rest_);
     ++number_;
     c_.about.start = c_.about.revision == 1991 ? start_of_1991(trim(first)) : std::string(trim(first));
-    // Time stamps are in nanoseconds if the seconds of the date have more than six decimals (2013,
-    // clause 7.4.7), otherwise in microseconds.
+    // Time stamps are in nanoseconds if the seconds of the date have more than six decimals (2013, clause
+    // 7.4.7), otherwise in microseconds.
     const auto point = first.rfind('.');
     std::size_t digits = 0;
     while (point != std::string_view::npos && point + 1 + digits < first.size() &&

@@ -31,17 +31,17 @@ Normal without_walks(const std::vector<EventSensitivities>& sensitivities, const
 /// Adds the prior of the inputs: a random walk of `intensity` times the variance in walk_weights().
 void add_walks(const std::vector<EventSensitivities>& sensitivities, const Point& at, double intensity,
                Normal& normal);
-/// Returns the cost of this prior.
+/// Returns the cost of the inputs' prior.
 double walk_cost(const std::vector<Knots>& knots, const Point& at, double intensity);
 
-/// The step to the minimum of the quadratic model. `damping` times the diagonals' scale is added to the
-/// diagonals.
+/// The step to the minimum of the quadratic model.
 struct Step {
   Eigen::VectorXd z;
   std::vector<Eigen::VectorXd> own;
   double falls = 0;            ///< reduction of the quadratic model's cost
-  double log_determinant = 0;  ///< of half the Hessian
+  double log_determinant = 0;  ///< log determinant of half the Hessian
 };
+/// Computes the step. `damping` times the scale of the diagonals is added to the diagonals.
 Step step_of(const Normal& normal, double damping = 0);
 
 /// Returns the posterior standard deviations of each event's own variables.

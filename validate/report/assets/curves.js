@@ -7,7 +7,7 @@ const curves = (() => {
       .getPropertyValue("--" + name)
       .trim();
 
-  /** Draws measured samples as points, at most one in two pixels: a long record stays fast. */
+  /** Draws measured samples as points, at most one in two pixels, so that long records are drawn fast. */
   function points(u, i, from, to) {
     const path = new Path2D(),
       [x, y] = [u.data[0], u.data[i]];
@@ -61,8 +61,8 @@ const curves = (() => {
   const text = (v, digits) => (v === null || v === undefined ? "–" : Number(v.toPrecision(digits)).toString());
 
   /**
-   * Returns uPlot's options. `of`: series of {name, ink}, unit, and what shades() shows, read at each drawing;
-   * below(u): draws more below the curves.
+   * Returns the options of uPlot. `of` contains the series {name, ink}, their unit, and the areas of shades(); it is
+   * read at each drawing. below(u) draws further items below the curves.
    */
   function options(of, { width, height, title, group, below }) {
     const axis = {

@@ -15,13 +15,13 @@
   const widest = document.querySelector("main");
   function width(box) {
     if (box.clientWidth) return box.clientWidth;
-    const half = box.closest(".panels, .large") && innerWidth > 900; // in a closed part: as wide as when it opens
+    const half = box.closest(".panels, .large") && innerWidth > 900; // in a closed part: its width when open
     const inner = widest.clientWidth - 2 * parseFloat(getComputedStyle(widest).paddingLeft);
     return half ? (inner - 18) / 2 : inner;
   }
   const height = (box) => parseInt(getComputedStyle(box).getPropertyValue("--height"), 10) || 220;
 
-  /** Writes into the caption which times the chart shows, unless it shows all: paper has no zoom. */
+  /** Writes the displayed time range into the caption, unless all times are displayed. A printed chart needs it. */
   function caption(chart) {
     const { min, max } = chart.plot.scales.x;
     const t = chart.of.data[0];
@@ -47,7 +47,7 @@
       },
     ];
     chart.plot = new uPlot(options, of.data, box);
-    of.view ??= charts.find((c) => c.of.group === of.group)?.of.view; // as the other charts of the group
+    of.view ??= charts.find((c) => c.of.group === of.group)?.of.view; // the view of the group's other charts
     if (of.view) {
       busy = true;
       chart.plot.setScale("x", { min: of.view[0], max: of.view[1] });
@@ -71,8 +71,8 @@
   for (const link of document.querySelectorAll('a[href^="#"]'))
     link.addEventListener("click", () => reveal(document.getElementById(link.hash.slice(1))));
 
-  // On paper: everything open, light colours. The canvases shrink and are not drawn again where possible, because a
-  // canvas that is drawn while printing makes a document of 100 MB.
+  // For printing, all parts are opened and the colours are light. Canvases are shrunk instead of redrawn where possible,
+  // because a canvas that is drawn while printing makes a document of 100 MB.
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const redraw = () => charts.forEach((c) => c.plot.redraw(false));
   dark.addEventListener("change", redraw);

@@ -1,9 +1,9 @@
-// Sorts the rows of a table by a click on a heading, and filters them by a text. Without scripts and on paper the table
-// has its own order and all rows.
+// Sorts the rows of a table when the reader clicks a heading, and filters them by a text. Without scripts the rows have
+// their original order. A print contains all rows.
 (() => {
   /** Returns the first number of a text; NaN if a word precedes it or there is none. */
   const number = (text) => parseFloat(/^[^\p{L}\d-]*(-?\d.*)/u.exec(text)?.[1]);
-  /** Compares two cells: numbers by size, else by text; missing values come last. */
+  /** Compares two cells: numbers by value, others as text; missing values come last. */
   function compare(a, b, sign) {
     if ((a === "–") !== (b === "–")) return a === "–" ? 1 : -1;
     const [x, y] = [number(a), number(b)];

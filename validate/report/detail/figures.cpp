@@ -64,7 +64,7 @@ std::string bars_svg(const Bars& b) {
   const double line = pairs ? 17 : 24, thick = pairs ? 13 : 16;
   std::size_t longest = 0;
   for (const auto& bar : b.bars) longest = std::max(longest, bar.label.size());
-  constexpr double kCapital = 8.6;  // width of a capital letter; names of effects consist of them
+  constexpr double kCapital = 8.6;  // width of a capital letter [px]; names of effects consist of capitals
   const double left = std::max(70.0, 12 + kCapital * static_cast<double>(longest));
   double largest = b.reference * 1.1;
   for (const auto& bar : b.bars)

@@ -6,7 +6,7 @@
 
 namespace swingbank::validate::report {
 
-/// Returns the name of a role in style sheets and scripts.
+/// Returns the name of a curve's role in style sheets and scripts.
 const char* ink_name(Ink ink);
 /// Returns the bar chart.
 std::string bars_svg(const Bars& bars);

@@ -18,9 +18,9 @@ namespace {
 double shade(double value, double good, double bad) {
   return std::clamp(std::log(value / good) / std::log(bad / good), 0.0, 1.0);
 }
-constexpr double kGoodRelative = 0.01;  // green, as a share of a parameter's variance
+constexpr double kGoodRelative = 0.01;  // error with shade 0, relative to a parameter's variance
 
-/// Returns the shade of a figure: green is the thesis's MSE (with a floor: the floor), red is
+/// Returns the shade of an MSE: 0 at the floor or, without one, at the thesis's MSE; 1 at that of
 /// predict-the-mean.
 double shade_of(const Task& task, const Of& of, const Figure& f) {
   if (f.over_floor) return shade(f.mse, f.mse / *f.over_floor, f.baseline);

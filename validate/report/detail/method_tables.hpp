@@ -16,14 +16,14 @@ inline constexpr const char* kCellMeaning =
 std::vector<Table> overview_tables(const std::vector<Task>& tasks);
 /// One row per method, one column per noise level, and the figures of the thesis's own methods.
 Table method_table(const Task& task);
-/// One row per generator left out, one column per method, at one noise level.
+/// One row per excluded generator, one column per method, at one noise level.
 Table generator_table(const Task& task, double noise);
 /// Generalisation ratio with the same rows and columns: MSE on the excluded generator / MSE on validation
 /// rows of the training generators, mean over seeds. No rows if nothing was trained.
 Table unseen_table(const Task& task, double noise);
 /// One row per parameter with raw and relative error of each method, at one noise level.
 Table parameter_comparison(const Task& task, double noise);
-/// Errors of estimates from several records of the same plant. No rows if no plant has three.
+/// Errors of estimates from several records of the same plant. No rows if no plant has three records.
 Table several_table(const Task& task);
 /// Table of training rows, epochs and processor time.
 Table effort_table(const Task& task);

@@ -39,7 +39,7 @@ Size size_of(const std::vector<const RunResult*>& runs) {
   return size;
 }
 
-/// Returns the generators common to all sizes; 0 stands for none left out.
+/// Returns the excluded generators common to all sizes; 0 means that no generator was excluded.
 std::set<int> common(const RunsOfSize& sizes) {
   std::map<int, std::size_t> seen;
   for (const auto& [key, runs] : sizes) {

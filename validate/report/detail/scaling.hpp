@@ -10,22 +10,23 @@
 
 namespace swingbank::validate::report {
 
-/// Mean over seeds and over the generators common to all sizes.
+/// Results at one number of training rows: means over seeds and over the generators common to all sizes.
 struct Size {
-  double rows = 0, core_seconds = 0, mse = 0, epochs = 0;  ///< of one run
+  double rows = 0, core_seconds = 0, mse = 0, epochs = 0;  ///< of one run, on average
   double low = 0, high = 0;                                ///< least and largest mean of a seed
 };
 /// Runs of one network with several numbers of training rows.
 struct ScalingSeries {
   std::string table, network;
   double noise = 0;
-  std::vector<int> generators;  ///< left out at all sizes; empty: none was left out
+  std::vector<int> generators;  ///< excluded at all sizes; empty: none was excluded
   std::vector<Size> sizes;      ///< sorted by rows
   [[nodiscard]] std::string name() const;
   /// Error against training rows and against processor time; none with fewer sizes than kLeastSizes.
   [[nodiscard]] std::optional<PowerLaw> by_rows() const;
   [[nodiscard]] std::optional<PowerLaw> by_time() const;
 };
+/// Minimum number of sizes: for a power law, and for a plot.
 inline constexpr std::size_t kLeastSizes = 4, kSizesToDraw = 3;
 
 /// Series with at least kSizesToDraw sizes, from all trained runs except control runs.

@@ -16,7 +16,7 @@ struct Task {
   /// Methods in the tables' order: the thesis's networks, other networks, untrained methods, the floor.
   [[nodiscard]] std::vector<std::string> methods() const;
   [[nodiscard]] std::vector<double> levels() const;   ///< noise levels in rising order
-  [[nodiscard]] std::vector<int> generators() const;  ///< left out; includes the thesis's for Tables V and VI
+  [[nodiscard]] std::vector<int> generators() const;  ///< excluded; includes the thesis's for Tables V and VI
   [[nodiscard]] std::vector<std::string> makers() const;
 };
 /// Groups the results into tasks, sorted by the thesis's tables, then preset and rows.
@@ -31,7 +31,7 @@ struct Of {
 };
 std::vector<const RunResult*> runs_of(const Task& task, const Of& of);
 
-/// Mean over generators of the means over seeds.
+/// Mean over seeds of the means over generators.
 struct Figure {
   double mse = 0, ratio = 0, baseline = 0;
   double standard_deviation = 0;  ///< standard deviation of the seeds' means
@@ -43,14 +43,14 @@ std::optional<Figure> figure_of(const Task& task, const Of& of);
 struct ParameterFigure {
   std::string name, unit;
   double mse = 0;
-  std::optional<double> relative;  ///< mean squared error over mean variance; none for a constant
+  std::optional<double> relative;  ///< mean squared error / mean variance; none for a constant
 };
 std::vector<ParameterFigure> parameter_figures(const Task& task, const Of& of);
 
 /// MSE of predicting the mean on all test rows; mean over the generators for kAnyGenerator. NaN without runs.
 double baseline_of(const Task& task, int generator = kAnyGenerator);
 
-/// The thesis's MSE for the method, else for its best network; mean over the task's generators.
+/// The thesis's MSE for the method, otherwise for the thesis's best network; mean over the task's generators.
 std::optional<double> thesis_mean(const Task& task, const std::string& method);
 
 /// Name in tables: "CNN", "MLP corrects", "closed form".

@@ -40,7 +40,8 @@ inline constexpr double kThesisPppd = 2.6, kThesisCnnOnPppdEvents = 0.018;
 /// Section 4.1: validation loss at which the GRU stopped improving on the data of Table VI.
 inline constexpr double kThesisGruTableVI = 0.9;
 
-/// Returns the thesis's entry for the network, else its best for that table and generator; nullptr: none.
+/// Returns the thesis's entry for the network, otherwise its entry with the lowest MSE for that table and
+/// generator; nullptr if there is none.
 constexpr const ThesisCell* thesis_cell(std::string_view table, std::string_view network, int generator) {
   const ThesisCell* best = nullptr;
   for (const auto& c : kThesisCells) {
