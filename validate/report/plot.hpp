@@ -13,7 +13,7 @@ struct PlotAxis {
   bool logarithmic = false;                  ///< logarithmic scale
   std::vector<std::string> names = {};       ///< vertical axis only: row names from the top, row i at y = i
   bool silent = false;                       ///< omit the names, which the panel to the left shows
-  std::pair<double, double> range = {0, 0};  ///< equal ends: range of the points
+  std::pair<double, double> range = {0, 0};  ///< range of values; equal ends: that of the points
 };
 /// Series of a plot. Points that a logarithmic axis cannot show (0, NaN) are omitted.
 struct PlotSeries {
@@ -22,7 +22,7 @@ struct PlotSeries {
   std::string name, colour;                            ///< an empty name is not in the legend
   std::vector<std::pair<double, double>> points = {};  ///< x and y of each point
   Mark mark = Mark::dot;                               ///< mark of the points
-  double size = 4.5, opacity = 1.0;                    ///< of the marks; size in [px]
+  double size = 4.5, opacity = 1.0;                    ///< size [px] and opacity of the marks
   bool line = false, dashed = false;                   ///< points are joined by a line; the line is dashed
   std::vector<std::pair<double, double>> reach = {};   ///< error bars: least and largest y of each point
   std::vector<std::array<double, 3>> band = {};        ///< shaded band: x, low, high

@@ -23,9 +23,10 @@ struct Coverage {
 };
 /// Errors of estimates from several test records of the same plant.
 struct SeveralRecords {
-  std::int64_t at_most = 0, plants = 0;  ///< most records used per plant; plants with three or more records
-  double records = 0;                    ///< mean number of records used per plant
-  double mse_of_mean = 0;                ///< MSE of the mean of the records' estimates, raw units
+  std::int64_t at_most = 0,
+               plants = 0;  ///< maximum of records used per plant; number of plants with at least three
+  double records = 0;       ///< mean number of records used per plant
+  double mse_of_mean = 0;   ///< MSE of the mean of the records' estimates, raw units
   std::optional<double> mse_of_product;  ///< MSE of the product of the posteriors; none: no posteriors
 };
 /// Content of a run's result file.
@@ -35,7 +36,7 @@ struct RunResult {
   std::string title;                   ///< of the experiment; empty in results without one
   std::int64_t seed = 0;               ///< seed of the run
   double noise = 0;                    ///< level of measurement noise; 0: none
-  int generator = 0;                   ///< bus of the generator left out; 0: none
+  int generator = 0;                   ///< bus of the excluded generator; 0: none
   int judged = 0;  ///< bus of another generator used for evaluation, to select a recipe; 0: none
   std::string dataset, dataset_hash, config_hash;  ///< folder of the dataset; its hashes
   double share = 1;                                ///< share of the training rows used
@@ -44,7 +45,8 @@ struct RunResult {
   double seconds = 0, seconds_per_epoch = 0;  ///< duration of the training [s]
   double core_seconds = 0;                    ///< processor time of all threads
   double mse = 0, mse_varied_only = 0, baseline_mse = 0, ratio = 0;
-  ///< mean over the parameters, all and varying ones; of the training mean; mse / baseline_mse
+  ///< mean over all parameters; over the varying ones; MSE of predicting the training mean; mse /
+  ///< baseline_mse
   double seen = 0;     ///< MSE on rows of training generators or operating points; NaN: nothing was trained
   double H_ratio = 0;  ///< ratio for H alone; NaN if H is constant
   std::vector<ParameterResult> parameters;  ///< scores of the parameters

@@ -24,7 +24,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kTableFourNetworks = {"cnn", "lstm", "gru"};
 
 std::string figure(double v) { return std::isfinite(v) ? fmt::format("{:.3g}", v) : "–"; }
-/// Returns the shade of MSE / baseline: 0.1 is green, 1 is red, logarithmic between.
+/// Returns the shade of MSE / baseline: 0 at a ratio of 0.1, 1 at a ratio of 1, logarithmic between.
 double shade(double ratio) { return std::clamp(1 + std::log10(ratio), 0.0, 1.0); }
 
 std::size_t table_rank(const std::string& table) {
@@ -36,7 +36,7 @@ std::size_t network_rank(const std::string& network) {
                                   kTableFourNetworks.begin());
 }
 
-/// Key of a row: a network in Table IV, else the generator left out.
+/// Key of a row: a network in Table IV, otherwise the excluded generator.
 struct RowKey {
   std::string network;
   int generator = 0;
@@ -291,14 +291,14 @@ void add_scaling(const std::vector<RunResult>& results, const std::string& table
   to.document.add(scaling_table(series));
 }
 
-/// Adds the table of recipe selection by nested cross-validation. Its runs are evaluated on a generator that
-/// the table's run trains on, without the generator that the table leaves out.
+/// Adds the table of recipe selection by nested cross-validation. Its runs exclude the same generator as the
+/// run of the table. They are evaluated on another generator, on which the run of the table trains.
 void add_choice(const std::vector<RunResult>& results, const std::string& table, Report& to) {
   struct Sum {
     double log_ratio = 0;
     int runs = 0;
   };
-  std::map<int, std::map<std::string, Sum>> of;  // by generator left out, then by network
+  std::map<int, std::map<std::string, Sum>> of;  // by excluded generator, then by network
   std::set<std::string> networks;
   for (const auto& r : results) {
     if (r.judged == 0 || r.table != table) continue;

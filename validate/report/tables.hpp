@@ -1,6 +1,6 @@
 #pragma once
-// Tables IV, V and VI of the thesis reproduced: own figures, the thesis's, and those of predicting the mean.
-// A run that was not made is shown as missing.
+// Reproduction of the thesis's Tables IV, V and VI: results of the runs, of the thesis, and of predicting the
+// mean. Absent runs are shown as missing.
 #include <string>
 #include <vector>
 
@@ -21,7 +21,7 @@ struct TableBlock {
 /// seed.
 std::vector<TableBlock> group_results(std::vector<RunResult> results);
 
-/// Table of errors: one row per generator left out, or per network in Table IV; missing runs are marked.
+/// Table of errors: one row per excluded generator, or per network in Table IV; missing runs are marked.
 Table score_table(const TableBlock& block);
 /// Table of each parameter's error: mean of the raw MSE over the runs, and median and worst of the MSE
 /// relative to the parameter's variance over the test rows.

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDecided = 0.5;  ///< least share determined by the records for a varied parameter
+constexpr double kDecided = 0.5;  ///< minimum reduction of a varied parameter's variance by the records
 constexpr int kLongestWindow = 8, kShortestWindow = 2;  ///< time window of the networks [s]
 constexpr int kComponents = 4;                          ///< principal components per second
 
@@ -154,8 +154,8 @@ std::vector<std::string> channels_of(const add::Addition& added, const std::vect
   return channels;
 }
 
-/// Returns the whole seconds after the event that every record has. Throws InputError if fewer than
-/// kShortestWindow.
+/// Returns the number of whole seconds that every record contains after its event. Throws InputError if it is
+/// below kShortestWindow.
 int seconds_of(const add::Addition& added) {
   double least = kLongestWindow;
   Problems problems;

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Reactance of each line [pu on the plant's base]; the resistance is a tenth. Faults at the buses reduce the
-/// plant's voltage to between zero and most of its value.
+/// Reactance of each line [pu on the plant's base]; the resistance is a tenth. With these values, faults at
+/// the buses reduce the plant's voltage to between zero and most of its initial value.
 constexpr double kLines[] = {0.05, 0.10, 0.15};
 constexpr double kLarge = 100;  ///< base of the large machine / base of the plant
 

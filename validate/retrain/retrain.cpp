@@ -23,7 +23,7 @@ const calibrate::NetworkEstimate::Parameter* find(const calibrate::NetworkEstima
   return at == e.parameters.end() ? nullptr : &*at;
 }
 
-/// Returns the reference values: the truth, else the fitted values.
+/// Returns the reference values: the true values if known, otherwise the fitted values.
 calibrate::Truth reference_of(const add::Addition& added, const calibrate::Truth& truth) {
   if (!truth.empty()) return truth;
   calibrate::Truth fitted;
@@ -81,7 +81,7 @@ sim::plant::Plant seen_plant(const calibrate::NetworkEstimate& e, const plant::P
   return plant;
 }
 
-/// Computes reduced chi-square and RMS of P and Q [MW, Mvar] of one event, with its state fitted.
+/// Computes reduced chi-square and RMS error of P and Q [MW, Mvar] of one event, with its state fitted.
 void leave(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& alone, double& reduced_chi2,
            double& rms) {
   reduced_chi2 = rms = kInfinity;

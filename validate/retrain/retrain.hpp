@@ -1,8 +1,8 @@
 #pragma once
-// Effect of an added model component on a trained network. Two datasets of the plant in its grid, without and
-// with the effect, train one network each, and both networks estimate from the same records. This module
-// needs no LibTorch: it writes the configs and compares the estimates. jobs/retrain_run.hpp generates and
-// trains.
+// Effect of an added model component on a trained network. One network is trained on a dataset of the plant
+// without the effect, another one on a dataset with the effect. Both networks estimate parameters from the
+// same records. This module needs no LibTorch: it writes the configs and compares the estimates.
+// jobs/retrain_run.hpp generates the datasets and trains the networks.
 #include <array>
 #include <filesystem>
 #include <string>
@@ -40,18 +40,18 @@ std::filesystem::path write_plant_grid(const std::filesystem::path& folder, cons
 /// Writes dataset and experiment configs of both networks below `folder`. The second has the effect of
 /// `added` at its fitted values, and varies the parameters that the records determine. The networks read P,
 /// Q, V and frequency, and speed and Ifd if every record has them and `added` compared them, for up to 8 s
-/// after the event. Throws InputError: a base config without a varied plant of this machine model, an
+/// after the event. Throws InputError for a base config without a varied plant of this machine model, an
 /// addition that a dataset cannot express, or records that end too early.
 std::array<RetrainSide, 2> write_retrain_configs(const std::filesystem::path& folder,
                                                  const plant::PlantModel& before, const add::Addition& added,
                                                  const std::vector<record::Record>& records,
                                                  const RetrainOptions& options);
 
-/// Parameter that both networks estimate, or only the network with the effect. Pairs: without, with the
-/// effect.
+/// Parameter that both networks estimate, or only the network with the effect. Arrays of two: without, with
+/// the effect.
 struct RetrainedParameter {
   std::string name, unit;       ///< "GENROU.H"
-  double reference = 0;         ///< true value, else fitted value
+  double reference = 0;         ///< true value if known, otherwise fitted value
   double deviation = 0;         ///< standard deviation of the drawn values: width of the range / sqrt(12)
   bool own = false;             ///< parameter of the effect, estimated by the second network only
   double estimate[2] = {0, 0};  ///< mean over the held-out events

@@ -49,7 +49,7 @@ std::vector<Switching> breaker_times(const record::Record& record, const std::ve
   if (record.open_circuit()) return {};
   for (const Switching& s : found)
     if (std::abs(s.time - breaker.time) < kNearBreaker) return {s};
-  // the initial power falls by half
+  // The power falls below half its initial value.
   constexpr double kLoaded = 0.01;  // [pu]: a smaller power is not conclusive
   for (std::size_t k = 0; k + 1 < record.t.size() && k + 1 < record.P.size(); ++k)
     if (std::abs(record.t[k] - breaker.time) < kNearBreaker && std::abs(record.P[0]) > kLoaded &&

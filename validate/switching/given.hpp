@@ -17,8 +17,9 @@ std::map<std::string, std::vector<double>> given_switching_times(const std::vect
 /// Returns the switching times that the user has given for a record; they are exact.
 std::vector<Switching> given_times(const record::Record& record);
 
-/// Returns the switching times of a record whose breaker opens: the step found within kNearBreaker of the
-/// given time, or the time at which P falls by half, else the given time.
+/// Returns the switching times of a record whose breaker opens. The time is that of the step found within
+/// kNearBreaker of the given time, otherwise that at which P falls by half, otherwise the given time. Empty
+/// if the breaker is open during the whole record.
 std::vector<Switching> breaker_times(const record::Record& record, const std::vector<Switching>& found);
 constexpr double kNearBreaker = 0.2;  ///< [s]
 

@@ -16,7 +16,7 @@ constexpr std::size_t kSamplesBeside = 3;
 double mean(std::span<const double> x) {
   return Eigen::Map<const Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size())).mean();
 }
-/// Returns the change from the values up to sample k to those after it.
+/// Returns the change from the mean of the values up to sample k to the mean of the values after k.
 double height(std::span<const double> x, std::size_t k) {
   return mean(x.subspan(k + 1, kSamplesBeside)) - mean(x.subspan(k + 1 - kSamplesBeside, kSamplesBeside));
 }

@@ -7,12 +7,13 @@
 
 namespace swingbank::validate::switching {
 
-/// Returns the last of the first n samples before P and Q step together, n - 1 if they do not. A distant load
-/// switching may move V by no more than its noise; the machine's response exceeds it through its admittance.
+/// Returns the last sample before P and Q have a common step within the first n samples; n - 1 without such a
+/// step. A distant load switching may change V by less than its noise. The changes of P and Q exceed their
+/// noise, because they are the change of V times the machine's admittance.
 std::size_t before_power_step(const record::Record& record, std::size_t n);
 
-/// Returns the time of the last sample before V leaves its level of the first half second [s], whether it
-/// switches or not.
+/// Returns the time of the last sample before V leaves its level of the first half second [s], by a step or
+/// gradually.
 double steady_until(const record::Record& record);
 
 /// Criterion for a signal that leaves its level.
@@ -22,7 +23,7 @@ struct Leaving {
   std::size_t from = 0;      ///< first sample to test
   std::size_t in_a_row = 2;  ///< required number of consecutive samples; noise alone seldom reaches two
 };
-/// Returns the first of these samples; the signal's length if there is none.
+/// Returns the first of the samples that have left the level; the signal's length if there is none.
 std::size_t leaves(std::span<const double> signal, const Leaving& rule);
 
 }  // namespace swingbank::validate::switching

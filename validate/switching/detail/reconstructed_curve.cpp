@@ -17,7 +17,7 @@ std::array<double, 4> cubics(double u) {
   return {a * a * a / 6, (3 * u * u * u - 6 * u * u + 4) / 6, (3 * a * a * a - 6 * a * a + 4) / 6,
           u * u * u / 6};
 }
-/// Returns the integrals of the products of their second derivatives over a span of length 1.
+/// Returns the integrals of the products of the B-splines' second derivatives over a span of length 1.
 const Eigen::Matrix4d& bends() {
   static const Eigen::Matrix4d product = [] {
     Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
@@ -37,8 +37,8 @@ ReconstructedCurve::ReconstructedCurve(const FilteredSamples& stretch, const Fil
   set_segments(stretch, window, switching_times);
   const Eigen::MatrixXd A = averages(stretch, window);
   const Eigen::Index samples = A.rows();
-  // The covariance of the samples, [real parts, imaginary parts], is smaller than the precision of the
-  // coefficients. Noise has components along and across the phasor.
+  // The covariance of the samples [real parts, imaginary parts] is factorised, because it is a smaller matrix
+  // than the precision of the coefficients. Noise has components along and across the phasor.
   Eigen::MatrixXd roots(count_, samples), covariance = Eigen::MatrixXd::Zero(2 * samples, 2 * samples);
   std::vector<Eigen::LLT<Eigen::MatrixXd>> priors;
   for (const Segment& s : segments_) {
@@ -105,7 +105,7 @@ Eigen::MatrixXd ReconstructedCurve::averages(const FilteredSamples& stretch,
       for (int span = index(at - half); span <= index(at + half); ++span) {
         const double from = std::max(s.from + span * s.span, at - half);
         const double to = std::min(s.from + (span + 1) * s.span, at + half);
-        if (from < at && at < to) {  // corner of a triangle
+        if (from < at && at < to) {  // the corner of a triangular window divides the interval
           add(s, span, from, at);
           add(s, span, at, to);
         } else if (from < to) {

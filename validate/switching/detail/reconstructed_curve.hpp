@@ -19,11 +19,11 @@ struct FilteredSamples {
 /// Most probable voltage. Between switching times its second derivative is white noise of intensity
 /// `roughness` [pu^2/s^3] (smoothing spline: G. Wahba, "Improper priors, spline smoothing and the problem of
 /// guarding against model errors in regression", J. R. Stat. Soc. B 40, 1978). Its basis is cubic B-splines
-/// with knots every half sample interval, or every eighth of the window's half-width if that is longer. It
-/// extends half a window beyond the stretch.
+/// with knots every half sample interval, or every eighth of the window's half-width if that is longer. The
+/// voltage extends half a window beyond the samples at either end.
 class ReconstructedCurve {
  public:
-  /// `switching_times`: switching times, ascending, within the stretch [s].
+  /// `switching_times`: switching times in ascending order, between the first and the last sample [s].
   ReconstructedCurve(const FilteredSamples& stretch, const FilterWindow& window,
                      const std::vector<double>& switching_times, double roughness);
   /// Returns the log evidence of window, switching times and roughness, up to a constant.
