@@ -367,8 +367,7 @@ class CsvReader {
   }
 
   /// Adds the fractions of a second to the times. Their unit is that of the heading, or seconds if all are
-  /// below 1. Otherwise they are counts of a clock, whose counts per second are inferred from the largest
-  /// value.
+  /// below 1. Otherwise they are counts of a clock, whose rate is inferred from the largest value.
   void add_fractions(std::vector<double>& t, RawRecord& raw) {
     const std::string name = headings_[*fraction_].name;
     double most = 0;

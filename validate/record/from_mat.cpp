@@ -222,7 +222,7 @@ class MatReader {
     }
   }
 
-  /// Adds a column. Only the first time column is added; another one with other values is listed in
+  /// Adds a column. Of time columns, only the first is added; others with other values are listed in
   /// other_times_.
   void add(const std::string& name, std::vector<double> values) {
     if (is_time(name))

@@ -131,8 +131,7 @@ class OutReader {
       split_blanks(line, cells_);
       if (cells_.empty() || (number_ == 1 && is_description())) continue;
       const bool last = text_.find_first_not_of(" \t\r\n\x1a") == std::string_view::npos;
-      // Columns have a fixed width. A shorter last line without a line end is therefore truncated within a
-      // number.
+      // Columns have a fixed width, so a shorter last line without a line end is truncated within a number.
       const bool shorter = length_ > 0 && length_ == before_ && line.size() < length_;
       if (last && !ended && (cells_.size() < part_.width || shorter)) {
         problems_.add("a truncated last line", fmt::format("{}:{}", part_.file, number_),

@@ -21,8 +21,7 @@ struct SourceFile {
 
 /// Location of a record: "FILE", "FILE#TERMINAL", or the files of one event, "FILE+FILE".
 struct Source {
-  /// Determines the files of a record. The conversion is implicit, because callers identify a record by its
-  /// path.
+  /// Determines the files of a record. The conversion is implicit, because a path identifies a record.
   Source(const std::filesystem::path& named);
   /// The same, from a string.
   Source(const std::string& named) : Source(std::filesystem::path(named)) {}

@@ -38,8 +38,7 @@ class ReducedCost {
   /// Computes the quadratic model of the cost of one response. `gain`: change of the gain's parameter.
   [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& response, double gain,
                                     const Eigen::MatrixXd& jacobian) const;
-  /// Returns the changes of the plant parameters that minimise the cost of a response, without the columns of
-  /// add_changes().
+  /// Returns the changes of the plant parameters that minimise the cost of a response, without add_changes().
   [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& response, double gain) const;
   /// The plant parameter that scales the response, and its exponent.
   struct Gain {
@@ -56,8 +55,7 @@ class ReducedCost {
     Eigen::MatrixXd T;           ///< Jacobian by the eliminated parameters
     Eigen::MatrixXd L;  ///< Jacobian by the response; empty: the response is a change of the residual
   };
-  /// Sets the eliminated parameters and their priors: the parameters of `at` that are not `held`, then the
-  /// changes `freed`.
+  /// Sets the eliminated parameters and their priors: those of `at` that are not `held`, then `freed`.
   void eliminate(const Inference& at, Gain gain, const std::vector<char>& held,
                  const std::vector<Eigen::Index>& freed = {});
   /// Returns the columns of the eliminated parameters among all, [plant | changes].

@@ -47,8 +47,7 @@ std::array<RetrainSide, 2> write_retrain_configs(const std::filesystem::path& fo
                                                  const std::vector<record::Record>& records,
                                                  const RetrainOptions& options);
 
-/// Parameter that both networks estimate, or only the network with the effect. Arrays of two: without, with
-/// the effect.
+/// Parameter that both networks estimate, or only the one with the effect. Arrays: without, with the effect.
 struct RetrainedParameter {
   std::string name, unit;       ///< "GENROU.H"
   double reference = 0;         ///< true value if known, otherwise fitted value

@@ -8,8 +8,8 @@
 namespace swingbank::validate::switching {
 namespace {
 
-/// Finds steps that a filter spreads over several intervals: changes over three intervals that exceed their
-/// surroundings.
+/// Finds steps that a filter spreads over several intervals. Such a step is a change over three intervals
+/// that exceeds its surroundings.
 std::vector<StepInterval> find_filtered_steps(const record::Record& r) {
   constexpr double kMinStep = 0.03;  // pu
   std::vector<StepInterval> steps;
@@ -30,7 +30,7 @@ std::vector<StepInterval> find_filtered_steps(const record::Record& r) {
 }
 
 /// Returns the change of the voltage phasor over sample interval k minus the mean of the adjacent changes
-/// [pu], the denominator of quotients of steps.
+/// [pu]. It is the denominator of quotients of steps.
 double step_height(const record::Record& r, std::size_t k) {
   if (k < 1 || k + 2 >= r.t.size()) return 0;
   const auto step = [&](std::size_t i) {

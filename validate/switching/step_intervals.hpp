@@ -1,5 +1,5 @@
 #pragma once
-// Sample intervals with a voltage step, also if a filter has spread it.
+// Sample intervals that contain a voltage step, also if a filter has spread the step.
 #include <cstddef>
 #include <vector>
 
@@ -7,14 +7,15 @@
 
 namespace swingbank::validate::switching {
 
-/// A sample interval (or two, if a filter spreads the step) with a voltage step.
+/// Sample interval that contains a voltage step, or several intervals if a filter has spread the step.
 struct StepInterval {
-  std::size_t before, after;  ///< samples
+  std::size_t before, after;  ///< samples before and after the step
 };
-/// Finds steps of the voltage phasor, down to the size that exceeds noise and swings.
+/// Finds steps of the voltage phasor, down to the size that exceeds noise and swings. If the user has given
+/// switching times, returns the intervals that contain them.
 std::vector<StepInterval> find_steps(const record::Record& record);
-/// Returns the steps large enough for a quotient of steps. Excluded are those of small events, and those
-/// where the fall and rise of a fault shorter than the filter overlap.
+/// Returns the steps that are large enough for a quotient of steps. Excluded are steps of small events, and
+/// the overlapping steps of a fault that is shorter than the filter's window.
 std::vector<StepInterval> find_large_steps(const record::Record& record);
 
 }  // namespace swingbank::validate::switching

@@ -13,12 +13,13 @@ namespace {
 
 bool integrated(const record::Record& r) { return r.angle == record::AngleSource::integrated; }
 
-/// Returns the steps of the instrument's phasor. An integrated angle does not contain its filtering.
+/// Returns the steps of the instrument's phasor. An integrated angle is not used, because it does not show
+/// the instrument's filter.
 VoltageSteps steps_of_instrument(const record::Record& r) {
   return integrated(r) ? VoltageSteps(r, std::vector<double>(r.t.size(), 0.0)) : VoltageSteps(r);
 }
 
-/// Keeps the given times. Of the filtered samples, those around them remain marked.
+/// Replaces the times by those given by the user. Only filtered samples around these remain marked.
 void take_given_times(const record::Record& r, StepShape shape, SwitchingTimes& times) {
   const auto found = std::exchange(times.switchings, given_times(r));
   for (std::size_t k = 0; k < times.filtered_samples.size(); ++k)
@@ -33,8 +34,8 @@ void take_given_times(const record::Record& r, StepShape shape, SwitchingTimes& 
 
 SwitchingTimes times_of(const record::Record& r, const VoltageSteps& steps, double threshold,
                         StepShape shape) {
-  // The threshold is half of the visible one: a filter spreads a step over two intervals, and an undetected
-  // step is played in as a ramp.
+  // Half the threshold is used, because a filter spreads a step over two intervals, and an undetected step
+  // would be played in as a ramp.
   SwitchingTimes times = steps.find(threshold / 2, shape);
   if (!r.switched.empty())
     take_given_times(r, shape, times);
@@ -44,7 +45,7 @@ SwitchingTimes times_of(const record::Record& r, const VoltageSteps& steps, doub
   return times;
 }
 
-/// Returns whether the records without given times passed a filter, if their angle is that of the instrument.
+/// Returns whether the records without given times passed a filter. An integrated angle is not used.
 bool passed_filter_by_evidence(const std::vector<record::Record>& records, double threshold) {
   std::vector<SwitchedRecord> if_filtered;
   for (record::Record r : records) {
@@ -88,7 +89,7 @@ std::vector<VoltageSteps> steps_of(const std::vector<record::Record>& records) {
 }  // namespace
 
 std::vector<double> angle_seen_by_rotor(const record::Record& r, double mva) {
-  constexpr double kTransientReactance = 0.3;  // X'd as most machines have it [pu]
+  constexpr double kTransientReactance = 0.3;  // typical X'd [pu]
   std::vector<double> theta = r.theta;
   if (integrated(r) && r.P.size() == r.t.size())
     std::ranges::transform(r.P, theta.begin(),

@@ -7,20 +7,20 @@
 
 namespace swingbank::validate::switching {
 
-/// Reach of a meter's window around a switching [samples]: there the frequency is not the derivative of the
-/// angle.
+/// Distance from a switching within which a meter's frequency is not the derivative of its angle [samples].
 constexpr double kPeakReach = 2.1;
 
 /// Options of the detection.
 struct SwitchingOptions {
-  double threshold = kStepThreshold;    ///< of VoltageSteps::detect() [pu]
+  double threshold = kStepThreshold;    ///< threshold of VoltageSteps::detect() [pu]
   StepShape shape = StepShape::either;  ///< either: determined from the records (step_shape_of)
-  double mva = 0;                       ///< rating of all machines whose power the records contain
+  double mva = 0;                       ///< rating of all machines whose power the records contain [MVA]
 };
 
-/// Returns the angle for the detection of switchings [rad]. An angle integrated from a frequency lacks their
-/// steps, but the power through the transient reactance shows them. It is replaced by that of the voltage
-/// seen from the rotor, theta = -0.3 P [pu on `mva`]. Others are returned unchanged.
+/// Returns the angle for the detection of switchings [rad]. An angle integrated from a frequency lacks the
+/// steps at switchings, but the power through the transient reactance shows them. Such an angle is replaced
+/// by the angle of the voltage relative to the rotor, theta = -0.3 P [pu on `mva`]. A measured angle is
+/// returned unchanged.
 std::vector<double> angle_seen_by_rotor(const record::Record& record, double mva);
 
 /// Returns the shape of steps as one instrument records them, from all of its records. The first step of each

@@ -11,10 +11,10 @@ namespace swingbank::validate::switching {
 /// Change of the network with a step of the voltage. Samples at `time` itself count as before it.
 struct Switching {
   double time = 0;                             ///< [s]
-  double uncertainty = 0;                      ///< it lies within time ± uncertainty [s]; 0: known
+  double uncertainty = 0;                      ///< the time lies within ± uncertainty [s]; 0: known
   bool has_before = false, has_after = false;  ///< whether `before` and `after` are known
   Complex before{}, after{};                   ///< one-sided voltages at `time` [pu], if known
-  double turn = 0;  ///< correction of an angle that was not measured, from here on [rad]
+  double turn = 0;                             ///< step added to an integrated angle from this time on [rad]
 };
 
 /// Step of the voltage in one sample interval above which it counts as a switching [pu].
@@ -23,7 +23,7 @@ constexpr double kStepThreshold = 0.02;
 /// Noise floor [pu]: residual of the interpolation between samples in a record without noise.
 constexpr double kLeastNoise = 1e-4;
 
-/// Shape of voltage steps as the instrument records them: all filtered, or none.
+/// Shape of all voltage steps as the instrument records them: sharp or filtered; `either`: unknown.
 enum class StepShape { either, sharp, filtered };
 
 /// Switching times of a record.

@@ -15,19 +15,19 @@ namespace swingbank::validate::switching {
 namespace {
 
 constexpr int kLeastKnots = 3;  ///< minimum number of knots in a reconstructed segment
-constexpr int kAbout = 4;       ///< samples of a stretch beyond the reach of the longest window
-constexpr int kNarrowings = 5;  ///< rounds of the search for switching times, each half as wide as the last
+constexpr int kAbout = 4;       ///< samples of a cluster beyond the longest window, on either side
+constexpr int kNarrowings = 5;  ///< rounds of the search for switching times; each halves the width
 /// After a change of the roughness, the search resumes at the width of this round.
 constexpr int kAgain = 2;
 constexpr int kLastNarrowings = 5;    ///< further rounds with the selected window
 constexpr double kSameLength = 1e-3;  ///< relative tolerance between a window and a sample interval
-/// Roughness of a grid's voltage between switchings [pu^2/s^3]: about 10 for a swing of 0.1 pu at 1 Hz, some
-/// hundred for the subtransient after a fault during its few hundredths of a second.
+/// Roughness of a grid's voltage between switchings [pu^2/s^3]. It is about 10 for a swing of 0.1 pu at 1 Hz,
+/// and several hundred in the few hundredths of a second of the subtransient after a fault.
 constexpr double kRoughness[] = {0.1, 1, 10, 100, 1e3, 1e4};
 constexpr double kFirstRoughness = 10;
-/// Step of the scan for switching times [sample intervals], and its roughnesses. If the grid misses a large
-/// step by a millisecond, a rough voltage fits better; but in a rough voltage a small step needs no switching
-/// time.
+/// Step of the scan for switching times [sample intervals], and its roughnesses. If the scan misses a large
+/// step by a millisecond, a rough voltage fits better. A rough voltage, however, can follow a small step
+/// without a switching time.
 constexpr double kScanStep = 0.25, kScanRoughness[] = {10, 100};
 
 /// Switchings first ... first + count - 1 of an event, whose windows overlap, and the samples around them.
@@ -42,7 +42,7 @@ struct BroughtBack {
   std::optional<ReconstructedCurve> curve = {};
 };
 
-/// Returns the noise from second differences before the first filtered sample.
+/// Returns the standard deviation of the noise, from second differences before the first filtered sample.
 double noise_of(const std::vector<double>& x, const SwitchedRecord& e) {
   const auto quiet =
       static_cast<std::size_t>(std::ranges::find(e.filtered_samples, 1) - e.filtered_samples.begin());
@@ -70,7 +70,7 @@ std::vector<Cluster> clusters_of(const SwitchedRecord& e, std::size_t event, dou
   return found;
 }
 
-/// Returns whether the switching times are ascending within the stretch.
+/// Returns whether the switching times ascend and lie between the first and the last sample.
 bool in_order(const std::vector<double>& switching_times, const FilteredSamples& stretch) {
   const double edge = 1e-2 * stretch.step;
   double last = stretch.t.front();
@@ -81,7 +81,8 @@ bool in_order(const std::vector<double>& switching_times, const FilteredSamples&
   return last + edge < stretch.t.back();
 }
 
-/// Search for a cluster's switching times: neighbouring pairs on a grid that is refined around the optimum.
+/// Search for a cluster's switching times. Neighbouring times are varied in pairs, on a grid that is refined
+/// around the optimum.
 class SwitchingTimeSearch {
  public:
   SwitchingTimeSearch(const Cluster& cluster, const FilterWindow& window)
@@ -111,8 +112,8 @@ class SwitchingTimeSearch {
   }
 
  private:
-  /// Keeps the best of the combinations of times i and i + 1, each moved from `about` by at most so many
-  /// steps.
+  /// Keeps the best combination of times i and i + 1, which are moved from `about` by at most `first` and
+  /// `second` steps of length `step` [s].
   void grid(BroughtBack& best, std::size_t i, const std::vector<double>& about, double step, int first,
             int second) const {
     const bool pair = i + 1 < about.size();
@@ -132,13 +133,13 @@ class SwitchingTimeSearch {
   const FilterWindow& window_;
 };
 
-/// Returns the width of the search for switching times after so many rounds [s].
+/// Returns the width of the search for switching times after `rounds` rounds [s].
 double width_after(const Cluster& c, int rounds) { return c.stretch.step / 2 / (1 << rounds); }
 
 bool has_given_times(const SwitchedRecord& e) { return !e.record.switched.empty(); }
 
-/// Returns approximate switching times; those given by the user are unchanged. All windows are even, so one
-/// of them suffices.
+/// Returns approximate switching times; those given by the user are unchanged. All windows are symmetric, so
+/// a scan with one of them suffices.
 std::vector<double> approximate_switching_times(const SwitchedRecord& e, const Cluster& c,
                                                 const FilterWindow& window) {
   std::vector<double> middle, width;
@@ -195,8 +196,8 @@ Attempt attempt(const std::vector<SwitchedRecord>& events, const std::vector<Clu
   return a;
 }
 
-/// Returns the log of the fraction of a switching time's uncertainty `open` [s] in which the evidence is near
-/// its maximum (Laplace approximation).
+/// Returns the log of the fraction of a switching time's uncertainty interval, of length `open` [s], in which
+/// the evidence is near its maximum (Laplace approximation).
 double log_occam_factor(const Cluster& c, const FilterWindow& window, const BroughtBack& b,
                         std::size_t time_index, double open) {
   const double aside = c.stretch.step / 50;
@@ -213,8 +214,9 @@ double log_occam_factor(const Cluster& c, const FilterWindow& window, const Brou
   const double bend = 2 * falls / sides;
   return bend > 0 ? std::min(0.0, std::log(std::sqrt(2 * constants::pi / bend) * aside / open)) : 0.0;
 }
-/// Drops switching times whose removal increases the evidence, most beneficial first: a fast swing resembles
-/// a step filtered by a wide window. Returns marks of the remaining ones of the cluster.
+/// Drops switching times whose removal increases the evidence, the largest increase first. A fast swing
+/// resembles a step that was filtered by a wide window. Returns marks of the cluster's remaining switching
+/// times.
 std::vector<char> drop_swings(const SwitchedRecord& e, const Cluster& c, const FilterWindow& window,
                               BroughtBack& b) {
   std::vector<char> stays(c.count, 1);
@@ -240,7 +242,7 @@ std::vector<char> drop_swings(const SwitchedRecord& e, const Cluster& c, const F
   return stays;
 }
 
-/// Removes the other switchings, and their marks of filtered samples.
+/// Keeps the switchings marked in `stays`. Removes the others, and their marks of filtered samples.
 void keep(SwitchedRecord& e, const std::vector<char>& stays) {
   std::vector<Switching> kept;
   for (std::size_t s = 0; s < stays.size(); ++s)
@@ -254,7 +256,7 @@ void keep(SwitchedRecord& e, const std::vector<char>& stays) {
         });
   if (std::ranges::count(e.filtered_samples, 1) == 0) e.filtered_samples.clear(), e.clean = {};
 }
-/// Drops such switching times of all events, and clusters without remaining ones.
+/// The same for all events. Drops clusters without remaining switching times.
 void drop_swings(std::vector<SwitchedRecord>& events, std::vector<Cluster>& clusters, Attempt& a) {
   std::vector<std::vector<char>> stays(events.size());
   for (std::size_t i = 0; i < clusters.size(); ++i) {
@@ -276,7 +278,7 @@ void drop_swings(std::vector<SwitchedRecord>& events, std::vector<Cluster>& clus
     }
 }
 
-/// Marks the samples within the window, in addition to those that were seen to move.
+/// Marks the samples within the window of a switching, in addition to those already marked.
 void mark_again(SwitchedRecord& e, const FilterWindow& window) {
   const double reach = window.half() - 1e-3 * e.record.step();
   for (std::size_t k = 0; k < e.record.t.size(); ++k)
@@ -316,7 +318,7 @@ void place(SwitchedRecord& e, const Cluster& c, const BroughtBack& b) {
     e.switchings[c.first + i] = {.time = b.switching_times[i], .uncertainty = e.record.step() / 5};
 }
 
-/// Fills all filtered samples of a cluster.
+/// Adds the reconstructed voltage of a cluster to the event's clean record.
 void fill(SwitchedRecord& e, const Cluster& c, const BroughtBack& b, double half) {
   const double begin = std::max(b.switching_times.front() - half, c.stretch.t.front());
   const double end = std::min(b.switching_times.back() + half, c.stretch.t.back());

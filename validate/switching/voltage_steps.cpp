@@ -17,8 +17,8 @@ double beyond(Complex x, Complex a, Complex b) {
   return std::abs(x - a - std::clamp(at, 0.0, 1.0) * (b - a));
 }
 /// Returns the distance of each step [pu] from the steps two and three before and after it, and from the
-/// segments between these: at the end of a converter's ramp, or at the turn of a swing, the step size changes
-/// gradually.
+/// straight segments between these. The segments cover steps whose size changes gradually, as at the end of a
+/// converter's ramp or at the turning point of a swing.
 std::vector<double> prominence(const std::vector<Complex>& step) {
   std::vector<double> d(step.size(), 0.0);
   for (std::size_t k = 3; k + 3 < step.size(); ++k) {
@@ -88,9 +88,9 @@ std::size_t largest_of(const std::vector<Complex>& step, StepSpan span) {
                        [](Complex a, Complex b) { return std::abs(a) < std::abs(b); }) -
       at);
 }
-/// Returns whether a subtransient decay follows the sharp step in interval m. An instrument's window is even
-/// and decreases to both sides. If its middle lies in m, its share in m - 1 is at least that in m + 2. A
-/// machine responds only after the step.
+/// Returns whether a subtransient decay follows the sharp step in interval m. An instrument's window is
+/// symmetric and decreases to both sides. If its middle lies in m, its share in m - 1 is at least that in m +
+/// 2. A machine responds only after the step.
 bool decays_after(const std::vector<Complex>& step, std::size_t m, double limit) {
   constexpr double kOfNext = 0.15, kOfLimit = 0.25;  // allowance for the rotor's swing
   constexpr double kLess = 0.9;                      // above it the next step begins
@@ -101,7 +101,7 @@ bool decays_after(const std::vector<Complex>& step, std::size_t m, double limit)
   return goes_on < kLess * std::abs(next) &&
          goes_on - std::abs(step[m - 1]) > std::max(kOfNext * std::abs(next), kOfLimit * limit);
 }
-/// Returns whether a filter is centred in interval m: its shares in the neighbours are equal.
+/// Returns whether a filter is centred in interval m: the changes in both neighbouring intervals are equal.
 bool is_even(const std::vector<Complex>& step, std::size_t m, double limit) {
   const Complex before = step[m - 1], after = step[m + 1];
   return std::abs(before - after) < limit && std::abs(before - step[m - 2]) > limit &&
@@ -116,9 +116,9 @@ bool has_peak(const std::vector<Complex>& step, StepSpan span, std::size_t m) {
 
 constexpr double kGoodPart = 0.15;  ///< fraction of a step's largest change
 
-/// Returns the smaller distance of each step from the extrapolations of the two steps before and of the two
-/// after it [pu]. A switching step differs from both, the change next to it from one, a rotor swing from
-/// none.
+/// Returns the distance of each step from the extrapolation of the two steps before it or of the two steps
+/// after it, whichever is smaller [pu]. A switching step differs from both extrapolations, the change next to
+/// it from one, and a rotor swing from neither.
 std::vector<double> extrapolation_errors(const std::vector<Complex>& step) {
   std::vector<double> out(step.size(), 0.0);
   for (std::size_t k = 2; k + 2 < step.size(); ++k)
@@ -211,8 +211,9 @@ SwitchingTimes VoltageSteps::find(double threshold, StepShape shape) const {
   return found;
 }
 
-/// Returns whether a filter has spread a step over several intervals: a large part lies in its second one. A
-/// smaller part may also come from a subtransient, whose further decay a fault of two samples hides.
+/// Returns whether a filter has spread a step over several intervals, so that a large part lies in a
+/// neighbouring interval. A smaller part may also come from a subtransient, whose further decay is hidden if
+/// the fault lasts only two samples.
 bool VoltageSteps::is_shared_out(const Switching& switching) const {
   std::size_t m = 1;
   for (std::size_t k = 1; k + 1 < step_.size(); ++k)
@@ -223,8 +224,9 @@ bool VoltageSteps::is_shared_out(const Switching& switching) const {
   return std::max(along(m - 1), along(m + 1)) > kGoodPart * std::norm(step_[m]);
 }
 
-/// Returns whether the record's first step is unfiltered: a decay follows it, or it is large or isolated, and
-/// too sudden. A filter would spread it over two intervals, or begin in the interval before.
+/// Returns whether the record's first step is unfiltered. Either a decay follows it, or it is large or
+/// isolated and begins too suddenly: a filtered step would spread over two intervals, or begin in the
+/// interval before.
 bool VoltageSteps::is_sharp(const Switching& first, double threshold) const {
   constexpr double kClear = 10, kBegins = 0.03;
   const auto k = static_cast<std::size_t>(

@@ -21,10 +21,10 @@ class VoltageSteps {
 
   /// Finds the sample intervals with a voltage step: the change differs from both neighbouring ones by more
   /// than `threshold` [pu] and more than ten times the median difference (noise). Each switching time is the
-  /// middle of its interval, with half the interval as uncertainty. If there are none: small isolated steps,
-  /// of at least a twentieth of `threshold`, as from the loss of a distant generator. Over ten samples on
-  /// either side, or to the start of the record, no second difference from noise or a swing exceeds a fifth
-  /// of such a step.
+  /// middle of its interval, with half the interval as uncertainty. If there are none, finds small isolated
+  /// steps, as from the loss of a distant generator. Such a step deviates from the extrapolated voltage by at
+  /// least a twentieth of `threshold`. Over ten samples on either side, or to the start of the record, no
+  /// deviation due to noise or a swing exceeds a fifth of it.
   [[nodiscard]] std::vector<Switching> detect(double threshold = kStepThreshold) const;
 
   /// Finds switchings, also if a filter has spread their steps over two or three sample intervals. With
@@ -32,13 +32,13 @@ class VoltageSteps {
   /// step over several intervals is interpreted as a swing and ignored.
   [[nodiscard]] SwitchingTimes find(double threshold, StepShape shape) const;
 
-  /// Returns the shape of the record's first step, `either` if it is not conclusive. The window of a filter
-  /// is even: it spreads a step equally before and after it. A decay on one side only is the machine's
-  /// subtransient response. Later steps may belong to swings. `found`: switchings found with
+  /// Returns the shape of the record's first step; `either` if the step is not conclusive. The window of a
+  /// filter is symmetric, so it spreads a step equally to both sides. A decay on one side only is the
+  /// machine's subtransient response. Later steps may belong to swings. `found`: switchings found with
   /// StepShape::either.
   [[nodiscard]] StepShape shape_of_first(const std::vector<Switching>& found, double threshold) const;
 
-  /// Returns whether the voltage moves before the interval of the first switching time given by the user.
+  /// Returns whether the voltage changes before the sample interval of the first given switching time.
   [[nodiscard]] bool moves_before_given(double threshold) const;
 
  private:

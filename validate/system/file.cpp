@@ -210,7 +210,7 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   });
 }
 
-/// Checks for a common clock, because the start epoch was subtracted from each record separately.
+/// Checks that the records have a common clock, because each record's own start epoch was subtracted.
 void check_clocks(Config& c, const SystemCase& s) {
   for (const auto& t : s.terminals)
     if (t.record.start != s.terminals.front().record.start)

@@ -74,8 +74,8 @@ class SwitchingTimeFit {
                                        .filtered_samples;
     }
   }
-  /// Returns the sum of squared residuals of all terminals, each over its pre-event variance, for switching
-  /// time k at t [s].
+  /// Returns the sum of squared residuals of all terminals, each divided by its pre-event variance, for
+  /// switching time k at t [s].
   double reduced_chi2(std::size_t k, double t) {
     auto switching_times = best_;
     switching_times[k] = t;

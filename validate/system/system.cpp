@@ -87,8 +87,8 @@ class Comparer {
 
  private:
   /// Returns the distance from a switching within which samples are not compared [s]: the filter's window
-  /// plus the range in which the cubic through the simulation's samples is wrong beside a step. Within it an
-  /// error of the switching time of a fraction of a millisecond is visible.
+  /// plus the range in which the cubic through the simulation's samples is wrong beside a step. Within this
+  /// distance, an error of the switching time by a fraction of a millisecond would be visible.
   [[nodiscard]] double filter_reach_at(const SystemTerminal& t) const {
     const double memory = sim::plant::memory(t.instruments);
     return memory > 0 ? memory + 2 * t.record.step() / kFine : undeclared_;
@@ -129,9 +129,9 @@ class Comparer {
     output(playin::Output::Efd, r.Efd, m.Efd);
     output(playin::Output::Ifd, r.Ifd, m.Ifd);
   }
-  /// Compares the angle relative to the reference terminal. The reference's own angle, all angles without a
-  /// reference, and recorded frequencies are compared as frequency. Returns the model's angle error before
-  /// the event [rad]; NaN if the frequency is compared.
+  /// Compares the angle relative to the reference terminal. The frequency is compared instead at the
+  /// reference terminal, at all terminals without a reference, and if the record contains a frequency but no
+  /// angle. Returns the model's angle error before the event [rad]; NaN if the angle is not compared.
   double angle(std::size_t i, compare::EventComparison& e, bool gone) {
     const auto reference = static_cast<std::size_t>(std::max(s_.reference, 0));
     const record::Record &r = s_.terminals[i].record, &other = s_.terminals[reference].record;
@@ -220,7 +220,7 @@ void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
   model.record_base = s.base;
   record::Record record = t.record;
   if (clock_doubt(record, c.switching_times).empty())
-    record.switched = c.switching_times;  // else the record's own steps
+    record.switched = c.switching_times;  // otherwise the steps of the record are used
   try {
     std::vector<compare::EventComparison> one = {compare::compare_event(model, std::move(record))};
     one.front().record.name = t.name;

@@ -71,7 +71,7 @@ struct SystemComparison {
   std::vector<std::string> notes;
 };
 /// Simulates the event and compares every terminal. Throws InputError if the grid cannot be simulated, or if
-/// a record has no pre-event.
+/// a record contains fewer than five samples before the event.
 SystemComparison compare_system(const SystemCase& system);
 
 report::Table ranking_table(const SystemCase& system, const SystemComparison& c);

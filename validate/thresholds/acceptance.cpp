@@ -17,7 +17,7 @@
 namespace swingbank::validate::thresholds {
 namespace {
 
-/// Maximum time left out after a fault and after its clearing in IEC 61400-27-2 [s].
+/// Maximum times that IEC 61400-27-2 excludes after a fault and after its clearing [s].
 constexpr double kMostAfterFault = 0.14, kMostAfterClearing = 0.5;
 constexpr double kMostPercent = 1000;
 

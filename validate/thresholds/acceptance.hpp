@@ -26,9 +26,9 @@ struct Errors {
 struct Acceptance {
   std::string name, source;                     ///< name of the limits, and their source
   std::array<std::array<Errors, 3>, 2> limits;  ///< [P, Q][phase]
-  double after_fault = 0, after_clearing = 0;   ///< time left out after the first and the last switching [s]
+  double after_fault = 0, after_clearing = 0;   ///< time excluded after the first and the last switching [s]
   double movement = 0;  ///< RMS error after the last switching [% of the RMS movement of the channel]
-  /// `channel`: 0 is P, 1 is Q.
+  /// Returns the limits of a channel (0: P, 1: Q) in a phase.
   [[nodiscard]] const Errors& of(int channel, Phase phase) const {
     return limits[static_cast<std::size_t>(channel)][static_cast<std::size_t>(phase)];
   }
@@ -37,7 +37,7 @@ struct Acceptance {
 /// Names of the presets; the first is the default.
 std::vector<std::string> acceptance_presets();
 /// Returns the preset `what` (the default if empty) or the limits of the file of that name. Throws InputError
-/// with every fault of the file, or if there is neither.
+/// with every fault of the file, or if neither a preset nor a file has this name.
 Acceptance read_acceptance(const std::string& what);
 /// Reads limits from a file's text; `name` is the file name in messages.
 Acceptance parse_acceptance(const std::string& text, const std::string& name);
@@ -58,7 +58,7 @@ int exceeding(const Errors& errors, const Errors& limits);
 /// Returns the exit code of a command that judges a model. 0: statistically complete (the residual is noise)
 /// and fit for purpose; 3: neither; 4: fit for purpose only; 5: statistically complete only.
 int exit_code(bool complete, bool fit);
-/// The same as text, for `--help`.
+/// Description of the exit codes for `--help`.
 extern const char* const kExitCodes;
 
 }  // namespace swingbank::validate::thresholds

@@ -1,15 +1,15 @@
 #pragma once
-// Criteria by which three commands decide whether a model is adequate, which sets their exit codes.
+// Criteria by which three commands decide whether a model is adequate. The decision sets their exit codes.
 // Command compare plays the records into the given model without a refit, so the effect of a wrong parameter
 // counts. Every bin of the error maps has its own limit, and one bin beyond its limit is enough. Commands
 // calibrate and add refit the parameters, then test the reduced chi-square of each event, held out or not.
 // The limit allows for the event's coloured noise and short pre-event window. Local errors may average out,
-// because the next question is which parameter is wrong, not at which second.
-// Command diagnose refits the parameters and decides whether to name an effect. Besides chi2 over all events
-// it tests slow remainders, steady oscillations and the evidence of free inputs. Effects of 40 times the
-// noise have been hidden in a reduced chi-square of 1.07. A named effect must have its evidence. The criteria
-// differ by the refit and by the consequence of a rejection, so they are not unified. Every verdict reports
-// the criterion that decided it; all limits are in thresholds.hpp.
+// because the next question is which parameter is wrong, not at which second. Command diagnose refits the
+// parameters and decides whether to name an effect. Besides chi2 over all events it tests slow remainders,
+// steady oscillations and the evidence of free inputs. Effects of 40 times the noise have been hidden in a
+// reduced chi-square of 1.07. A named effect must have sufficient evidence. The criteria differ by the refit
+// and by the consequence of a rejection, so they are not unified. Every verdict reports the criterion that
+// decided it; all limits are in thresholds.hpp.
 #include <string>
 #include <string_view>
 
@@ -30,9 +30,9 @@ enum class Criterion {
 
 /// Name and description of a criterion for reports.
 struct CriterionRecord {
-  std::string_view name;            ///< in JSON
+  std::string_view name;            ///< name in JSON
   std::string_view asks;            ///< description for readers
-  std::string_view unit;            ///< of value and limit
+  std::string_view unit;            ///< unit of value and limit
   std::string_view while_adequate;  ///< relation of value to limit while the model is adequate
 };
 /// Returns the record of a criterion.
@@ -75,10 +75,11 @@ struct Refitted {
   double line;           ///< reduction of chi2 by a steady oscillation, less its penalty [chi2]
   double torque, field;  ///< evidence of each input, free in time [chi2]
 };
-/// Returns adequate if all five criteria hold. The first violated criterion decides; if none is violated, the
-/// reduced chi-square is reported. `least`: limit of the reduced chi-square.
+/// Returns the ruling on a refitted model: adequate if all five criteria hold. The first violated criterion
+/// decides; if none is violated, the reduced chi-square is reported. `least`: limit of the reduced
+/// chi-square.
 Ruling judged_by_remainder(const Refitted& r, double least);
-/// Returns not adequate: an effect of this evidence was accepted.
+/// Returns the ruling that a model is not adequate because an effect with this evidence was accepted.
 Ruling judged_by_evidence(const std::string& effect, double evidence);
 
 /// Exit codes of a command that judges a model (acceptance.hpp): neither statistically complete nor fit for

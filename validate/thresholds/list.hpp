@@ -1,5 +1,5 @@
 #pragma once
-// List of all thresholds in the order of the stages, and their JSON.
+// List of all thresholds in the order of their definition, and their JSON.
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace swingbank::validate::thresholds {
 
-/// Returns all thresholds, in the order of their definition.
+/// Returns all thresholds.
 std::vector<Threshold> all_thresholds();
-/// [{"name", "value", "unit", "why"}]
+/// Returns all thresholds as [{"name", "value", "unit", "why"}].
 nlohmann::json thresholds_json();
 /// Returns {"criterion", "quantity", "adequate", "value", "limit", "unit", "where"}; value null if not
 /// finite.

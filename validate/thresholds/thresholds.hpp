@@ -1,14 +1,14 @@
 #pragma once
-// Every number that decides a verdict: limits of noise, evidence, prediction and adequacy. One struct per
-// stage, one record per threshold; `swingbank diagnose --thresholds` prints them all. Numbers that only
-// control the effort of a search (steps, starts, rounds) are defined with the search.
+// Every number that decides a verdict: limits of noise, evidence, prediction and adequacy. Each struct is a
+// group of thresholds; `swingbank diagnose --thresholds` prints them all. Numbers that only control the
+// effort of a search (steps, starts, rounds) are defined with the search.
 #include <string_view>
 
 namespace swingbank::validate::thresholds {
 
 /// A number that decides a verdict, with its name, unit and reason.
 struct Threshold {
-  std::string_view name;  ///< stage.field
+  std::string_view name;  ///< group.field
   double value;           ///< number that the verdict compares with [unit]
   std::string_view unit;  ///< unit of the value
   std::string_view why;   ///< the decision it controls, and its decision record (docs/decisions) or source
@@ -32,8 +32,8 @@ struct Evidence {
   Threshold within_reach{"evidence.within_reach", 200, "chi2",
                          "largest gain that a long fit is expected to add to a short one; hypotheses further "
                          "behind the best are neither refined nor judged (decision 61)"};
-  /// Share of the leading extension's evidence from which a better optimum of the base model restarts the
-  /// diagnosis [-].
+  /// Share of the leading hypothesis's evidence. A better optimum of the base model that explains more than
+  /// this share restarts the diagnosis [-].
   Threshold escape{
       "evidence.escape", 0.5, "share of the leading extension's evidence",
       "if a better optimum of the base model explains more, the diagnosis starts again (decision 61)"};
@@ -82,11 +82,11 @@ struct HeldOut {
   /// Share of the cost without the effect up to which an unseen event is predicted [-].
   Threshold falls{"held_out.falls", 0.1, "share of the cost without the effect",
                   "a held-out event whose cost falls to this share is predicted too (decision 41)"};
-  /// Share of the total reduction from which the effect acts in one event only [-].
+  /// Share of one event in the total cost reduction, above which the effect acts in this event only [-].
   Threshold alone{"held_out.alone", 0.8, "share of the cost reduction on held-out events",
                   "an effect acts in one event only if that event has a larger share; other events then "
                   "cannot predict it"};
-  /// Share of such an event's chi2 that must remain when the fit excludes it [-].
+  /// Share of that event's chi2 that must remain when the fit excludes the event [-].
   Threshold unpredicted{"held_out.unpredicted", 0.5, "share of that event's chi2",
                         "and if a larger share of its chi2 remains when the fit excludes it"};
 };
@@ -110,7 +110,7 @@ struct Adequacy {
   /// Penalty for each fitted number of a steady oscillation [chi2].
   Threshold number{"adequacy.number", 2, "chi2 per number",
                    "penalty for each fitted number of a steady oscillation (Akaike 1974)"};
-  /// Standard deviations of an event's limit above the expected chi-square [standard deviations].
+  /// Distance of an event's limit from the expected reduced chi-square [standard deviations].
   Threshold one_in_thousand{
       "adequacy.one_in_thousand", 3.09, "standard deviations",
       "one-sided quantile of the normal distribution: noise alone exceeds an event's limit once "
@@ -145,7 +145,7 @@ struct Search {
       "search.nearly_fits", 1.5, "chi2 per value",
       "hypotheses with a smaller reduced chi-square are fitted with the whole plant, whatever "
       "their rank in the identification (decision 61)"};
-  /// Share of the better input's gain from which the blocks of the other side are identified [-].
+  /// Share of the better input's gain in chi2, from which blocks of the other input are identified too [-].
   Threshold fair{"search.fair", 0.2, "share of the best gain",
                  "blocks of a side are identified if its inferred input reduces chi2 by at least this "
                  "share (decision 61)"};
@@ -158,11 +158,12 @@ inline constexpr Search search;  ///< the thresholds in use
 
 /// Search for user-defined models of the inferred input (decision 21).
 struct UserModels {
-  /// Largest share of the base model's chi2 that an input may leave to justify a user-defined model [-].
+  /// Largest share of the base model's chi2 that may remain with an inferred input for a user-defined model
+  /// to be searched [-].
   Threshold explains{"laws.explains", 0.3, "share of the base model's chi2",
                      "largest share that may remain with the inferred input if a user-defined model is "
                      "searched: a reduction by 70 % (decision 21)"};
-  /// Largest ratio of chi2 at which the other input is searched too [-].
+  /// Largest ratio of chi2 at which models of the other input are searched too [-].
   Threshold as_much{"laws.as_much", 1.5, "ratio of chi2",
                     "largest ratio of the chi2 of the other inferred input to that of the better one, if "
                     "both explain the residual equally well (decision 21)"};
@@ -173,11 +174,11 @@ struct UserModels {
   Threshold judged_below{
       "laws.judged_below", 2, "chi2 per value",
       "user-defined models whose first fit has a larger reduced chi-square are not judged (decision 21)"};
-  /// Additional evidence for a user-defined model of the record's own time [chi2].
+  /// Additional evidence for a user-defined model that depends on the record's time [chi2].
   Threshold own_time{"laws.own_time", 6, "chi2",
                      "additional evidence of a model of the record's own time, which is meaningful only if "
                      "all records begin alike (decision 21)"};
-  /// Additional evidence for a user-defined model in proportion to the initial value [chi2].
+  /// Additional evidence for a user-defined model whose output is proportional to the initial value [chi2].
   Threshold in_proportion{"laws.in_proportion", 3, "chi2",
                           "additional evidence of a model in proportion to the initial value (decision 21)"};
 };
@@ -197,23 +198,23 @@ struct Addition {
 };
 inline constexpr Addition addition;  ///< the thresholds in use
 
-/// Statements of calibrate and the tables on a parameter (decision 17).
+/// Thresholds of the statements about a parameter in calibrate and in the tables (decision 17).
 struct Parameters {
   /// Prior standard deviation of a model's parameters, relative [-].
   Threshold prior_sd{
       "parameters.prior_sd", 0.2, "relative",
       "prior standard deviation of a model's parameters, unless --spread is given (decision 15)"};
-  /// Share decided by the records below which a parameter is not identified [-].
+  /// Reduction of a parameter's variance by the records, below which the parameter is not identified [-].
   Threshold identified{"parameters.identified", 0.5, "share determined by the records",
                        "parameters, or combinations of parameters, below this are not identified"};
-  /// Component of a poorly identified direction from which a parameter belongs to it [-].
+  /// Component of a parameter in a combination that is not identified, from which it is listed with it [-].
   Threshold member{"parameters.member", 0.3, "component of a unit vector",
                    "least component of a parameter in a combination that is not identified"};
   /// Largest ratio of standard errors for which a further event is recommended [-].
   Threshold narrowed{
       "parameters.narrowed", 0.8, "ratio of standard errors",
       "a further event is recommended if it reduces a parameter's standard error below this ratio"};
-  /// Largest relative difference in cost at which two starts reached the same optimum [-].
+  /// Largest relative difference in cost at which two starts count as having reached the same optimum [-].
   Threshold agrees{
       "parameters.agrees", 0.01, "share of the cost",
       "largest difference from the best start at the same optimum; agrees_least if that is more"};
@@ -327,8 +328,8 @@ struct DtrSimulation {
       "not compared after the last switching (RTE DTR, data sheet I16, comparison with simulations)"};
 };
 inline constexpr DtrSimulation dtr_simulation;  ///< the limits in use
-/// Limit of a channel's error relative to its movement. A limit in % of MVA alone passes a unit whose whole
-/// response is missing if that response is small.
+/// Limit of a channel's error relative to its movement. A limit in % of MVA alone would accept a model
+/// without any response, if the measured response is small.
 struct Movement {
   /// Limit of the RMS error after the last switching, relative to the channel's RMS movement [%].
   Threshold error{

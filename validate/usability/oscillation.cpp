@@ -15,8 +15,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Signals = std::vector<std::vector<double>>;
 
-/// Three significant digits of the response, for the order of its decomposition (T. K. Sarkar, O. Pereira,
-/// IEEE Antennas and Propagation Magazine 37 (1995) 48).
+/// Largest ratio of the singular values that count as modes: three significant digits of the response (T. K.
+/// Sarkar, O. Pereira, IEEE Antennas and Propagation Magazine 37 (1995) 48).
 constexpr double kSignificant = 1e3;
 
 /// Returns the Hankel matrices of the signals, one above the other.
@@ -55,7 +55,7 @@ std::optional<Oscillation> least_damped_oscillation(const Signals& signals, doub
   const VectorXcd z = poles(signals, accuracy);
   if (z.size() == 0) return {};
   const auto samples = static_cast<Eigen::Index>(signals.front().size());
-  MatrixXcd powers(samples, z.size());  // of z: the modes' time series
+  MatrixXcd powers(samples, z.size());  // powers of z: the modes' time series
   powers.row(0).setOnes();
   for (Eigen::Index k = 1; k < samples; ++k) powers.row(k) = powers.row(k - 1).cwiseProduct(z.transpose());
   MatrixXcd y(samples, static_cast<Eigen::Index>(signals.size()));
@@ -66,7 +66,7 @@ std::optional<Oscillation> least_damped_oscillation(const Signals& signals, doub
   const double rest = (y - powers * residues).squaredNorm();
   std::optional<Oscillation> least;
   for (Eigen::Index k = 0; k < z.size(); ++k) {
-    if (!(z[k].imag() > 0)) continue;  // one of a conjugate pair
+    if (!(z[k].imag() > 0)) continue;  // only one of each conjugate pair
     const double amplitude = 2 * residues.row(k).cwiseAbs().maxCoeff();
     const double energy = (2 * powers.col(k) * residues.row(k)).real().squaredNorm();
     if (!(amplitude > accuracy) || !(energy > rest)) continue;

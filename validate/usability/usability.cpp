@@ -15,7 +15,7 @@ namespace {
 using sim::plant::Plant;
 namespace network = sim::network;
 
-/// Returns the plant without what belongs to an event: instruments and changed references.
+/// Returns the plant without the parts that belong to an event: instruments and reference changes.
 Plant plant_for_studies(Plant plant) {
   plant.measurements.clear();
   std::erase_if(plant.controls, [](const sim::plant::Block& b) {
@@ -32,8 +32,8 @@ const sim::Effect* regulator_of(const Plant& plant) {
   return nullptr;
 }
 
-/// Returns the plant at bus 0 and the infinite bus at bus 1; the reactance is half a line and half the
-/// source's own, so that none is near zero.
+/// Returns a grid with the plant at bus 0 and the infinite bus at bus 1. Half the reactance is that of a line
+/// and half that of the source, so that neither is near zero.
 sim::grid::Grid grid_of(const plant::PlantModel& model, const Plant& plant, const OperatingState& at) {
   sim::grid::Grid grid;
   grid.library = model.library;
@@ -83,8 +83,8 @@ sim::grid::Grid grid_of(const plant::PlantModel& model, const Plant& plant, cons
   return grid;
 }
 
-/// Returns the step at t = 0. A reactor at the plant's bus changes voltage and reactance of the source behind
-/// it by the same factor, here 1 - kStudyStep (Thevenin).
+/// Returns the step at t = 0. A reactor at the plant's bus multiplies voltage and reactance of the Thévenin
+/// source by the same factor, here 1 - kStudyStep.
 network::Event step_of(const Plant& plant, Complex voltage) {
   if (regulator_of(plant)) return {.faults = {}, .trips = {}, .setpoint_steps = {{0, 0.0, kStudyStep, 0.0}}};
   const double susceptance = (1 / (1 - kStudyStep) - 1) / kStudyReactance;
@@ -102,7 +102,7 @@ struct Deviation {
     for (const double v : of[signal]) most = std::max(most, std::abs(v));
     return most;
   }
-  /// Whether the response moves less in the second half of the run than in the first.
+  /// Whether the response changes less from sample to sample in the second half of the run than in the first.
   [[nodiscard]] bool decays() const {
     double half[2] = {0, 0};
     for (const auto& y : of)
@@ -153,8 +153,8 @@ UsabilityAt check_at(const plant::PlantModel& model, const Plant& plant, const O
     at.oscillation = least_damped_oscillation(moved.of, kStudyRate, kSampleError);
     at.damped = moved.stable && moved.decays();
     if (auto& o = at.oscillation) {
-      // The decay in one radian must exceed the error of a sample; without damping its sign is that of
-      // rounding.
+      // The decay in one radian must exceed the error of a sample. Otherwise rounding errors determine the
+      // sign of the damping ratio.
       at.damped = at.damped && o->damping * o->amplitude > kSampleError;
       o->amplitude *= 100;
     }

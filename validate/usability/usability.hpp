@@ -1,6 +1,6 @@
 #pragma once
-// Usability of a plant model in a study: initialisation, drift without a disturbance, and damping of a small
-// step, against an infinite bus behind a reactance.
+// Usability of a plant model in a study: initialisation, drift without a disturbance, and damping after a
+// small step. The plant is connected to an infinite bus through a reactance.
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -11,12 +11,11 @@
 
 namespace swingbank::validate::usability {
 
-/// Conditions of the check; they are printed with its result and are no limits.
+/// Conditions of the check. They are not limits, and are printed with the result.
 constexpr double kStudyReactance = 0.2;  ///< between the plant and the infinite bus [pu on the plant's MVA]
 constexpr double kStudyDuration = 10;    ///< length of each run [s]
-constexpr double kSampleError =
-    1e-7;                            ///< error of a simulated sample, from all steps [pu on the plant's MVA]
-constexpr double kStudyStep = 0.01;  ///< step of the reference, or of the Thévenin voltage [pu]
+constexpr double kSampleError = 1e-7;    ///< accumulated error of a simulated sample [pu on the plant's MVA]
+constexpr double kStudyStep = 0.01;      ///< step of the reference, or of the Thévenin voltage [pu]
 
 /// Operating point before one event.
 struct OperatingState {
@@ -29,12 +28,12 @@ struct OperatingState {
 struct Oscillation {
   double frequency = 0;  ///< [Hz]
   double damping = 0;    ///< damping ratio: -real part / magnitude of its eigenvalue [-]
-  double amplitude = 0;  ///< just after the step, of P or Q, whichever is larger [% of MVA]
+  double amplitude = 0;  ///< larger one of the amplitudes of P and Q just after the step [% of MVA]
 };
 /// Result at one operating point.
 struct UsabilityAt {
   OperatingState state;      ///< operating point
-  std::string failure;       ///< why the model does not initialise or cannot be simulated; empty: it does
+  std::string failure;       ///< why the model does not initialise or cannot be simulated; empty: no failure
   bool initialises = false;  ///< every state is in equilibrium and within its limits
   double drift_P = 0, drift_Q = 0;  ///< largest deviation from the start without a disturbance [% of MVA]
   std::optional<Oscillation> oscillation = {};  ///< the least damped one after the step; none: no oscillation
@@ -43,7 +42,7 @@ struct UsabilityAt {
 /// Result for all operating points.
 struct Usability {
   std::vector<UsabilityAt> at;  ///< one entry for each operating point
-  std::string step;             ///< "step of Vref of SEXS by +1 %"
+  std::string step;             ///< "step of the reference of SEXS by +0.01 pu"
   std::string not_checked;      ///< reason why nothing was checked; empty: checked
   /// Returns the verdict in at most eight words.
   [[nodiscard]] std::string verdict() const;
@@ -53,8 +52,8 @@ struct Usability {
 
 /// Simulates the plant from each operating point, without a disturbance and with a small step, by the
 /// reference integrator. The step is that of the voltage reference if the plant has an exciter or a plant
-/// control, else a shunt reactor. Instrument models and reference changes of the records are not simulated. A
-/// part of a plant (component) is not checked.
+/// control, otherwise the switching of a shunt reactor. Instrument models and reference changes of the
+/// records are not simulated. A part of a plant (component) is not checked.
 Usability check_usability(const plant::PlantModel& model, const std::vector<OperatingState>& states);
 
 /// Returns the least damped oscillation of uniformly sampled signals [signal][sample] of one system, by the

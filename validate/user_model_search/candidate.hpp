@@ -1,7 +1,7 @@
 #pragma once
 // Candidates for a user-defined model u = f(signal) or u = f(time) of the inferred input. They are enumerated
-// on grids of their few parameters and ranked by regression on the inferred input, which is cheap enough for
-// thousands. The leading candidates are then fitted to the records (search.hpp).
+// on grids of their few parameters and ranked by regression on the inferred input, which is fast enough for
+// thousands of candidates. The leading candidates are then fitted to the records (search.hpp).
 #include <array>
 #include <limits>
 #include <string>
@@ -47,7 +47,7 @@ struct UserModelParameter {
 
 /// A candidate: text of the user-defined model, and its parameters.
 struct UserModelCandidate {
-  fit::InputKind kind = fit::InputKind::torque;  ///< input that the model drives
+  fit::InputKind kind = fit::InputKind::torque;  ///< input to which the model's output is added
   std::string family;             ///< "static", "lagged", "limited", "dead-banded", "periodic", "step", ...
   std::string signal;             ///< name in kUserModelSignals, "time" or "time since the voltage moved"
   std::string words;              ///< description with {name} in place of a parameter's value
@@ -59,9 +59,9 @@ struct UserModelCandidate {
   std::vector<std::vector<double>> time_series;  ///< [event][knot] [pu]
 };
 
-/// Returns the deviation of the voltage that triggers a candidate's clock [pu]. It exceeds the voltage's
-/// noise and is at most half of the deviation in the smallest event with a switching. 0: no event has a
-/// switching, or the smallest deviation is too small.
+/// Returns the deviation of the voltage that starts a candidate's time [pu]. It exceeds the voltage's noise
+/// and is at most half of the deviation in the smallest event with a switching. Returns 0 if no event has a
+/// switching, or if the smallest deviation is too small.
 double trigger_level(const noise::WhitenedEvents& events);
 
 /// Returns the best candidate of each family and signal, in ascending order of score. `level`: see

@@ -124,7 +124,7 @@ void describe_curve(const Form& f, const Eigen::VectorXd& factors, UserModelCand
   user_model.requirements = order;
   user_model.words = "an odd function of {x} through " + points + ", linear in between";
 }
-/// Writes the TOML expression and the description of each shape. `y`: name of the filtered signal.
+/// Writes the TOML expression and the description of each shape.
 void describe_shape(const Form& f, const Eigen::VectorXd& factors, UserModelCandidate& user_model) {
   constexpr double kMostGain = 1e6, kMostLevel = 10;
   const double factor = factors[0];

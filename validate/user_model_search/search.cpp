@@ -18,7 +18,7 @@
 namespace swingbank::validate::user_model_search {
 namespace {
 
-/// Prior standard deviation of a parameter about the regression's value: a factor e.
+/// Relative prior standard deviation of a parameter about the value of the regression (a factor of e).
 constexpr double kRegressionPriorSd = 1.0;
 constexpr std::size_t kFitted = 8;     ///< maximum number of candidates that are fitted to the records
 constexpr std::size_t kPerSignal = 3;  ///< maximum number of fitted candidates of one signal
@@ -51,8 +51,9 @@ std::vector<UserModelCandidate> leading(const std::vector<UserModelCandidate>& r
   }
   return chosen;
 }
-/// Returns the extra evidence that a candidate needs. A time of the record is meaningful only if records
-/// start alike. A candidate in proportion to the initial value is more specific than one that is not.
+/// Returns the additional evidence that a candidate needs. A time of the record is meaningful only if all
+/// records start at the same time before the event. A candidate in proportion to the initial value is more
+/// specific than one that is not.
 double handicap(const UserModelCandidate& user_model) {
   return (user_model.signal == "time" ? thresholds::user_models.own_time.value : 0.0) +
          (user_model.family.ends_with("in proportion") ? thresholds::user_models.in_proportion.value : 0.0);

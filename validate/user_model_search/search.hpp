@@ -17,7 +17,7 @@ struct UserModelFinding {
   std::shared_ptr<const sim::Effect> effect;  ///< compiled form of the model
   hypothesis::Judgement judgement;            ///< its plant contains the model
   std::string words;                          ///< description with fitted values, units and intervals
-  std::string toml;  ///< TOML file for `swingbank add NAME --user-defined model FILE`
+  std::string toml;                           ///< TOML file for `swingbank add NAME --law FILE`
 };
 
 /// Result of a search for user-defined models.
@@ -50,8 +50,8 @@ struct Unexplained {
 /// explains most of the residual.
 UserModelSearch search_user_models(const Unexplained& case_, const event::Progress& report = {});
 
-/// Returns for example "None of the 31 known effects explains it; a torque of ... does: ..."; empty without
-/// an accepted model.
+/// Returns for example "None of the 31 known effects explains the records; a torque of ... does: ..."; empty
+/// without an accepted model.
 std::string user_model_sentence(const UserModelSearch& search, std::size_t hypotheses);
 
 /// Returns the plant with the user-defined model after the blocks of its slot, and sets `block` to its

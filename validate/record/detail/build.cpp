@@ -72,8 +72,7 @@ void check_magnitudes(const RawRecord& raw, SampleFaults& faults) {
                    "give V as a magnitude and theta as its angle; are their columns swapped?");
 }
 
-/// Returns whether a frequency in mHz is a deviation: all its values are below a quarter of nominal
-/// frequency.
+/// Returns whether a frequency in mHz is a deviation: all values are below a quarter of nominal frequency.
 bool is_deviation(const RawColumn& column, const RecordBase& base) {
   if (column.meaning.unit != Unit::millihertz || column.meaning.deviation) return false;
   return std::ranges::none_of(column.values, [&](double v) { return std::abs(v) > 250 * base.frequency; });
@@ -99,8 +98,7 @@ RawColumn& time_of(RawRecord& raw) {
 }
 std::vector<double>& times_of(RawRecord& raw) { return time_of(raw).values; }
 
-/// Shifts times above 1e6 s, such as seconds since 1970, to begin at zero. Reports cannot display larger
-/// times.
+/// Shifts times above 1e6 s to begin at zero, because reports cannot display seconds since 1970.
 void begin_at_zero(RawRecord& raw, Record& about) {
   std::vector<double>& t = times_of(raw);
   if (t.empty() || !(std::abs(t.front()) > 1e6)) return;
@@ -159,8 +157,7 @@ bool is_long_without(const std::vector<double>& values, const EvenRows& rows) {
   return static_cast<double>(longest) * step > kLongestGap * (1 + 1e-6);
 }
 
-/// Returns the rows on a uniform grid, without lost rows at either end. Gaps longer than kLongestGap become
-/// faults.
+/// Returns the rows on a uniform grid, without lost rows at the ends. Gaps over kLongestGap become faults.
 EvenRows settle(RawRecord& raw, const ReadOptions& options, Record& r, SampleFaults& faults) {
   check_magnitudes(raw, faults);
   const std::vector<double>& t = times_of(raw);
@@ -184,8 +181,7 @@ EvenRows settle(RawRecord& raw, const ReadOptions& options, Record& r, SampleFau
   return rows;
 }
 
-/// Returns a column's values at fractional row numbers, interpolated linearly; NaN where the row number is
-/// NaN.
+/// Returns a column's values at fractional row numbers, interpolated linearly; NaN where a number is NaN.
 std::vector<double> at_places(const std::vector<double>& values, const std::vector<double>& places) {
   std::vector<double> all;
   all.reserve(places.size());
@@ -223,8 +219,8 @@ std::vector<std::size_t> fill_unmeasured(std::vector<double>& values, const Even
   return filled;
 }
 
-/// Sets the channels of `r` on the grid `rows`. Returns marks of the frames in which a compared channel has
-/// no value.
+/// Sets the channels of `r` on the grid `rows`. Returns marks of frames in which a compared channel has no
+/// value.
 std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r) {
   std::vector<double> current, angle;
   std::vector<char> unmeasured;

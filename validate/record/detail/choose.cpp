@@ -293,8 +293,7 @@ class Mapper {
   Problems& problems_;
 };
 
-/// Returns whether no column of the same quantity belongs more closely to the terminal: "32/1" is preferred
-/// to "32".
+/// Returns whether no column of the quantity belongs more closely to the terminal: "32/1" rather than "32".
 bool is_nearest(const std::vector<Heading>& headings, const Heading& one, const Terminals& terminals) {
   const ColumnMeaning& m = *one.meaning;
   return std::ranges::none_of(headings, [&](const Heading& h) {

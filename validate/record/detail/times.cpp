@@ -136,8 +136,7 @@ class Grid {
  private:
   [[nodiscard]] bool coarse() const { return rows_.resolution > 0.15 * h_; }
 
-  /// Leaves out a row off the grid. Returns false if more than 1 % of the rows, and more than two, are left
-  /// out.
+  /// Leaves out a row off the grid. Returns false after more than two rows and more than 1 % of all rows.
   [[nodiscard]] bool leave_out(std::size_t row) {
     off_.push_back(row);
     return off_.size() <= std::max<std::size_t>(2, t_.size() / 100);

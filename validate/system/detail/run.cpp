@@ -21,9 +21,9 @@ std::vector<double> scaled(const double* values, int n, double factor) {
   return out;
 }
 
-/// Corrects the samples beside a step at position `at` [samples]. Sampling would place the step half-way
-/// between them; the nearer sample gets a share of it, so that window averages correspond to its true
-/// position.
+/// Corrects the samples beside a step at position `at` [samples]. A window average of uncorrected samples
+/// would place the step half-way between them. The nearer sample gets a share of the step, so that window
+/// averages correspond to the true position.
 void place_step(std::vector<Complex>& y, double at) {
   const double before = std::floor(at + 1e-6);
   if (before < 0 || before + 2 > static_cast<double>(y.size())) return;

@@ -46,10 +46,10 @@ sim::network::Event moved(sim::network::Event e, Move move) {
   return e;
 }
 
-/// Estimates the event's switching times. Voltage steps determine each within half a sampling interval.
-/// Within that interval they are fitted to V, P and Q of every terminal up to one second after the last, so
-/// that a wrong model cannot move them further. Sets `uncertainty` [s]. Throws InputError if no record has as
-/// many voltage steps as the event has switching times.
+/// Estimates the event's switching times. Voltage steps determine each time within half a sampling interval.
+/// Within this uncertainty the times are fitted to V, P and Q of every terminal, up to one second after the
+/// last switching. A wrong model thus cannot move them further. Sets `uncertainty` [s]. Throws InputError if
+/// no record has as many voltage steps as the event has switching times.
 std::vector<double> estimate_switching_times(const SystemCase& system, double& uncertainty);
 
 /// Returns a warning if a record has as many voltage steps as there are switching times, but at other times;

@@ -10,9 +10,9 @@
 namespace swingbank::validate::user_model_search {
 namespace {
 
-/// Duration of every start and end [s]: a step would have zero gradient.
+/// Duration of every rise and fall [s]. An abrupt step would have a zero gradient with respect to its time.
 constexpr double kRise = 0.05;
-/// Absolute sine above which a square wave is at its amplitude, for the same reason.
+/// Absolute sine above which a square wave has its full amplitude, for the same reason.
 constexpr double kEdge = 0.1;
 /// Number of harmonics of a sawtooth; the omitted ones contain 4 % of its mean square.
 constexpr int kHarmonics = 16;

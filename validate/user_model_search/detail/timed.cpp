@@ -13,7 +13,7 @@ namespace {
 
 using Kind = UserModelShape::Kind;
 
-/// Origin and scale of a candidate.
+/// Time origin and scale of a candidate.
 struct Clock {
   bool triggered = false;  ///< counted from the voltage deviation, otherwise from time zero of the record
   bool scaled = false;     ///< in proportion to the initial active power or field voltage
@@ -136,7 +136,7 @@ class Timed {
     user_model.time_series = regression_.by_event(at.result.time_series);
     return user_model;
   }
-  /// Adds the start time as a parameter, or as a constant if it is not determined.
+  /// Adds the start time as a parameter and returns its name; returns a constant for `always`.
   std::string add_begin(const Clock& clock, const At& at, bool always, UserModelCandidate& user_model) const {
     const std::string level = fmt::format("the voltage leaves a band of ± {:.3g} pu", level_);
     if (always) {
