@@ -10,7 +10,7 @@
 
 namespace swingbank::validate::record {
 
-/// Analog channel of a COMTRADE record with its samples.
+/// Analogue channel of a COMTRADE record with its samples.
 struct ComtradeChannel {
   std::string id, phase, component, unit;  ///< identifier; phase; circuit component; unit of `values`
   double a = 1, b = 0;                     ///< value = a x + b [unit]
@@ -26,7 +26,7 @@ struct ComtradeStretch {
   std::size_t first = 0, end = 0;  ///< half-open range of samples
 };
 
-/// Content of a COMTRADE record (IEEE Std C37.111): configuration and analog samples.
+/// Content of a COMTRADE record (IEEE Std C37.111): configuration and analogue samples.
 struct Comtrade {
   std::string station, device;             ///< names of the station and of the recorder
   int revision = 0;                        ///< 1991, 1999 or 2013
@@ -36,7 +36,7 @@ struct Comtrade {
   std::vector<double> t;                   ///< [s]; 0 at the first sample
   std::vector<ComtradeStretch> stretches;  ///< in order; empty if time stamps determine the times
   double resolution = 0;  ///< rounding of the time stamps [s]; 0 if a rate determines the times
-  std::vector<ComtradeChannel> channels;  ///< analog channels, in the order of the configuration
+  std::vector<ComtradeChannel> channels;  ///< analogue channels, in the order of the configuration
   std::vector<std::string> notes;         ///< contradictions between the files that were resolved
 
   std::string file;                 ///< name of the data file in messages

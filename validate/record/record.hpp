@@ -18,8 +18,8 @@ struct RecordBase {
   double mva = 100.0;       ///< base of P_pu and Q_pu [MVA]
   double frequency = 60.0;  ///< base of f_pu and omega_pu [Hz]
   double kv = 0.0;          ///< base of voltages in kV, line to line; 0: columns in kV are refused
-  /// Field voltage and current, in the record's unit (other pu base, V or A), that equal 1 pu of the model
-  /// (air-gap line). 0: the record uses the model's pu, and columns in V or A are refused.
+  /// Field voltage and field current that equal 1 pu of the model (air-gap line), in the record's unit (V, A
+  /// or another pu). 0: the record uses the model's pu, and columns in V or A are refused.
   double efd = 0.0, ifd = 0.0;  ///< field voltage and current that equal 1 pu
 };
 

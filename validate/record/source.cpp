@@ -37,7 +37,7 @@ std::vector<std::filesystem::path> parts_of(const std::filesystem::path& named) 
   return parts;
 }
 
-/// Returns the .inf of a PSCAD output file "case_01.out"; empty if the name has no number or there is none.
+/// Returns the .inf of a PSCAD output file "case_01.out"; empty if the name has no number or no .inf exists.
 std::filesystem::path inf_of(const std::filesystem::path& out) {
   const std::string stem = out.stem().string();
   const auto digits = stem.find_last_not_of("0123456789");

@@ -24,8 +24,9 @@ class ClosedLoop {
   [[nodiscard]] const Inference& inference() const { return inference_; }
   /// Sampling interval [s].
   [[nodiscard]] double step() const { return events_.front().record.step(); }
-  /// Returns the change of the whitened residuals, orthogonal to the bases, with plants that differ in values
-  /// only: [value and state variable of all events][plant]; NaN for a plant that cannot be simulated.
+  /// Returns the change of the whitened residuals, orthogonal to the bases, for plants that differ in
+  /// parameter values only: [value and state variable of all events][plant]. It is NaN for a plant that
+  /// cannot be simulated.
   [[nodiscard]] Eigen::MatrixXd responses(const std::vector<sim::plant::Plant>& plants,
                                           const sim::Conventions& conventions) const;
 

@@ -20,7 +20,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 constexpr int kIntensities = 5;
 constexpr double kSameIntensity =
     0.7;  ///< difference of logarithms below which two intensities count as equal
-/// Maximum factor between consecutive intensities, for residuals nonlinear and linear in the inputs.
+/// Maximum factor between consecutive intensities: if residuals are nonlinear in the inputs; if linear.
 constexpr double kNearIntensity = 100, kAnyIntensity = 1e12;
 /// Knots are one sample apart until kCloseKnots [s] after a switching time. Then their spacing grows by the
 /// factor kKnotGrowth from knot to knot, up to kFarApart [s].

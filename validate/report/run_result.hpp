@@ -18,7 +18,7 @@ struct ParameterResult {
 };
 /// Coverage of the posterior intervals with probability `nominal`.
 struct Coverage {
-  double nominal = 0, observed = 0;  ///< shares of 1
+  double nominal = 0, observed = 0;  ///< nominal and observed share, 0 to 1
   double rows = 0;                   ///< number of evaluated rows
 };
 /// Errors of estimates from several test records of the same plant.

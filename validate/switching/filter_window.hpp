@@ -4,7 +4,7 @@
 
 namespace swingbank::validate::switching {
 
-/// Averaging window: an even weight function with integral 1.
+/// Averaging window: a symmetric weight function with integral 1.
 class FilterWindow {
  public:
   /// Form of the weight function; class_m: the class M reference filter of IEEE C37.118.1.

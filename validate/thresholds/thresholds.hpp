@@ -207,7 +207,7 @@ struct Parameters {
   /// Reduction of a parameter's variance by the records, below which the parameter is not identified [-].
   Threshold identified{"parameters.identified", 0.5, "share determined by the records",
                        "parameters, or combinations of parameters, below this are not identified"};
-  /// Component of a parameter in a combination that is not identified, from which it is listed with it [-].
+  /// Least component of a parameter in a combination that is not identified, for it to be listed [-].
   Threshold member{"parameters.member", 0.3, "component of a unit vector",
                    "least component of a parameter in a combination that is not identified"};
   /// Largest ratio of standard errors for which a further event is recommended [-].

@@ -107,7 +107,7 @@ void describe_curve(const Form& f, const Eigen::VectorXd& factors, UserModelCand
   std::string points, order;
   for (int k = 1; k <= kPoints; ++k) {
     double u = factors[k - 1];
-    if (std::abs(u) < least) u = std::copysign(least, u);  // steps relative to the value could not leave zero
+    if (std::abs(u) < least) u = std::copysign(least, u);  // relative steps cannot leave zero
     user_model.parameters.push_back({fmt::format("w{}", k), "pu", point_of(f, k), 1e-7, 10.0, false,
                                      fmt::format("deviation at point {}", k)});
     user_model.parameters.push_back(

@@ -24,7 +24,7 @@ struct UserModelFinding {
 struct UserModelSearch {
   fit::InputKind kind = fit::InputKind::none;  ///< input of the search; none: no search
   std::vector<UserModelTrace> traces;          ///< inferred input and signals of each event
-  /// The best candidate of each kind, by their regression on the inferred input.
+  /// The best candidate of each kind, by regression on the inferred input.
   std::vector<UserModelCandidate> ranked;
   /// Fitted to the records; accepted ones first, then in descending order of evidence.
   std::vector<UserModelFinding> findings;

@@ -12,8 +12,8 @@ struct Across {
   std::vector<double> inside;  ///< values in the gap
   double step = 0;             ///< step in the gap; 0 if the criterion prefers a smooth polynomial
 };
-/// Interpolates at the abscissae `inside` from the values `value` at `at` on both sides. The abscissae are
-/// scaled to about 1 on each side. Requires at least kMinAcross values.
+/// Interpolates at the abscissae `inside` from the values `value` at `at` on both sides. The abscissae range
+/// from about -1 to 1, with 0 in the middle of the gap. Requires at least kMinAcross values.
 Across across(const std::vector<double>& at, const std::vector<double>& value,
               const std::vector<double>& inside);
 constexpr std::size_t kMinAcross = 6;

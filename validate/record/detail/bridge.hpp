@@ -4,8 +4,8 @@
 
 namespace swingbank::validate::record {
 
-/// Removes lost samples at both ends of the grid and notes the gaps between them in about.notes. Returns
-/// false if a gap is longer than kLongestGap.
+/// Removes lost samples at both ends of the grid and notes the remaining gaps in about.notes. Returns false
+/// if a gap is longer than kLongestGap.
 bool gaps_are_short(EvenRows& rows, Record& about);
 
 /// Fills the samples marked in record.lost. Voltage, angle, frequency, speed, P and Q are interpolated by a

@@ -264,7 +264,7 @@ std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r)
 }
 
 /// Integrates the frequency if no angle was recorded. Without a frequency, and for an exciter or governor,
-/// the angle is zero and its source AngleSource::none.
+/// the angle is zero and its source is AngleSource::none.
 void settle_angle(Record& r) {
   if (!r.theta.empty()) return;
   if (r.component == Component::exciter || r.component == Component::governor) {

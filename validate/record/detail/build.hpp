@@ -16,7 +16,7 @@ struct Heading {
   std::string name;  ///< as written in the file
   std::optional<ColumnMeaning> meaning;
   std::string unit = {};  ///< from another header line
-  /// Returns whether the line of units, or else the heading in brackets, contains an unknown unit.
+  /// Returns whether the line of units or, without one, the brackets of the heading contain an unknown unit.
   [[nodiscard]] bool unknown_unit() const;
 };
 

@@ -20,7 +20,7 @@ using enum Quantity;
 
 bool has(const Present& present, Quantity q) { return present[static_cast<std::size_t>(q)]; }
 
-/// Returns those lists of alternative quantities, required by a component, of which the file contains none.
+/// Returns the lists of alternative quantities (ReadOptions::needed) of which the file contains none.
 std::vector<std::vector<Quantity>> missing_lists(const Present& present, const ReadOptions& options) {
   std::vector<std::vector<Quantity>> all;
   for (const auto& words : options.needed) {

@@ -11,9 +11,9 @@ bool same_rows(const RawRecord& raw, std::size_t a, std::size_t b);
 /// Their number is noted.
 void drop_repeats(RawRecord& raw, SampleFaults& faults);
 
-/// Marks frames in which voltage, power, current and their angles are exactly zero as lost, if V, P and Q
-/// continue after them as before. After a bolted fault at the terminals, which a simulation may write as
-/// zeros, voltage and power would differ. Such frames are kept. Frames of zeros at either end are lost too.
+/// Marks frames of zeros as lost: voltage, power, current and their angles are exactly zero, and V, P and Q
+/// continue after them as before. If V or the power differs, the frames are kept. They are then a bolted
+/// fault at the terminals, which a simulation may write as zeros. Frames of zeros at either end are lost too.
 /// Lost and kept frames are noted.
 void lose_zero_frames(RawRecord& raw, SampleFaults& faults);
 

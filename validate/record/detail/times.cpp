@@ -24,10 +24,10 @@ std::vector<double> steps_of(const std::vector<double>& t) {
 /// contains an invalid time.
 constexpr std::size_t kMostSamples = 2'000'000;
 
-/// Coarsest rounding of times at which a lost frame is recognised, as a fraction of a step.
+/// Coarsest rounding of times at which a lost frame is recognised, as a fraction of the sample interval.
 constexpr double kCoarsest = 0.75;
 
-/// Largest backward step to a row off the grid, as a fraction of a step.
+/// Largest backward step to a row off the grid, as a fraction of the sample interval.
 constexpr double kFarBack = 0.98;
 
 /// Maximum number of consecutive rows at one time, and maximum share of repeated rows. A simulation writes a

@@ -86,7 +86,7 @@ std::string parameter_picture(const Task& task) {
 
 std::string reliability_picture(const Task& task) {
   std::map<std::pair<std::string, double>, std::map<double, std::pair<double, double>>>
-      counted;  // inside, rows
+      counted;  // rows inside, all rows
   for (const auto& r : task.runs)
     for (const auto& c : r.coverage) {
       auto& [inside, rows] = counted[{r.network, r.noise}][c.nominal];

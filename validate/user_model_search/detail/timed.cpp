@@ -160,7 +160,7 @@ class Timed {
     double phase =
         std::atan2(at.result.factors[1], at.result.factors[0]) + constants::turn * at.b * (middle - at.begin);
     phase -= constants::turn * std::floor(phase / constants::turn);
-    if (phase < 0.3) phase += constants::turn;  // leaves room below on a logarithmic scale
+    if (phase < 0.3) phase += constants::turn;  // leaves room for smaller values on a logarithmic scale
     user_model.parameters.push_back(
         {"phase", "rad", phase, 0, 20, false, "phase in the middle of the records"});
     user_model.body += fmt::format("turned = \"{} - {:g}\"\n", now, middle);
