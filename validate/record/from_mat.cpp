@@ -222,8 +222,7 @@ class MatReader {
     }
   }
 
-  /// Adds a column. Of time columns, only the first is added; others with other values are listed in
-  /// other_times_.
+  /// Adds a column. Of several time columns, the first is added; different ones are listed in other_times_.
   void add(const std::string& name, std::vector<double> values) {
     if (is_time(name))
       for (const MatColumn& c : columns_)
