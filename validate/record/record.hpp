@@ -151,9 +151,9 @@ struct ReadOptions {
 /// terminals; "FILE+FILE" joins the columns of several files of one event. Columns that are not measurements
 /// of the terminal are listed in `ignored`. Repairs (short gaps, repeated stamps, clock adjustments) are
 /// listed in `notes`. check_record (validate/check/check.hpp) checks the content. Throws InputError with
-/// every fault of the file and its lines or bytes: missing or repeated columns, columns without unit, lines
-/// of unequal length, values that are not finite or missing for longer than kLongestGap, times that do not
-/// increase or are unevenly spaced, too few samples.
+/// every fault of the file and its lines or bytes. Faults are missing or repeated columns, columns without
+/// unit, lines of unequal length and too few samples. So are values that are not finite or missing for longer
+/// than kLongestGap, and times that do not increase or are unevenly spaced.
 Record read_record(const Source& source, const RecordBase& base, const ReadOptions& options = {});
 
 /// Reads a record, with the staged events that apply to the file. If the breaker is open during the whole

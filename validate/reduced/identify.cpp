@@ -165,9 +165,9 @@ class Identifying {
     starts_.resize(std::min(starts_.size(), static_cast<std::size_t>(options.kept)));
     std::ranges::copy(given, std::back_inserter(starts_));  // given starts are always optimised
   }
-  /// Improves the starts by differential evolution (Storn and Price 1997): each start moves toward one of the
-  /// best and by the difference of two others, and keeps the move if its cost falls. Unlike gradient steps,
-  /// it crosses discontinuities of the cost, where a limiter begins to pick up in another event.
+  /// Improves the starts by differential evolution (Storn and Price 1997). Each start moves toward one of the
+  /// best and by the difference of two others. It keeps the move if its cost falls. Unlike gradient steps, it
+  /// crosses discontinuities of the cost, where a limiter begins to pick up in another event.
   void evolve() {
     if (starts_.size() < kMinimumToEvolve) return;
     double least = std::numeric_limits<double>::infinity();

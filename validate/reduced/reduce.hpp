@@ -48,8 +48,8 @@ class Reduction {
   /// [knot][plant]. The controls receive the signals of the simulated plant.
   [[nodiscard]] Eigen::MatrixXd responses(event::InputKind kind,
                                           const std::vector<sim::plant::Plant>& plants) const;
-  /// Returns the part of an input that the submitted plant's controls do not produce, at all knots: the
-  /// inferred input, or the output of the simulated plant's additional block.
+  /// Returns, at all knots, the part of an input that the submitted plant's controls do not produce. It is
+  /// the inferred input, or the output of the simulated plant's additional block.
   [[nodiscard]] const Eigen::VectorXd& series(event::InputKind kind) const {
     return kind == event::InputKind::torque ? torque_ : field_;
   }
@@ -74,8 +74,8 @@ class Reduction {
   ReducedCost::Gain torque_gain_, field_gain_;
 };
 
-/// Cost of one input's time series u in a Reduction (reduced_cost.hpp), in open loop: its responses are the
-/// time series that a block adds to the input of the plant's own controls, at all knots [knot of all events].
+/// Cost of one input's time series u in a Reduction (reduced_cost.hpp), in open loop. A response is the time
+/// series that a block adds to the output of the plant's own controls [knot of all events].
 class ReducedPlant : public ReducedCost {
  public:
   /// The other input stays free if the reduction contains it. `held` marks plant parameters that are fixed

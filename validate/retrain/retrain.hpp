@@ -39,9 +39,9 @@ std::filesystem::path write_plant_grid(const std::filesystem::path& folder, cons
 
 /// Writes dataset and experiment configs of both networks below `folder`. The second has the effect of
 /// `added` at its fitted values, and varies the parameters that the records determine. The networks read P,
-/// Q, V and frequency, and speed and Ifd if every record has them and `added` compared them, for up to 8 s
-/// after the event. Throws InputError for a base config without a varied plant of this machine model, an
-/// addition that a dataset cannot express, or records that end too early.
+/// Q, V and frequency for up to 8 s after the event. They also read speed and Ifd, if every record has them
+/// and `added` compared them. Throws InputError for a base config without a varied plant of this machine
+/// model, an addition that a dataset cannot express, or records that end too early.
 std::array<RetrainSide, 2> write_retrain_configs(const std::filesystem::path& folder,
                                                  const plant::PlantModel& before, const add::Addition& added,
                                                  const std::vector<record::Record>& records,

@@ -21,8 +21,8 @@ constexpr int kNarrowings = 5;  ///< rounds of the search for switching times; e
 constexpr int kAgain = 2;
 constexpr int kLastNarrowings = 5;    ///< further rounds with the selected window
 constexpr double kSameLength = 1e-3;  ///< relative tolerance between a window and a sample interval
-/// Roughness of a grid's voltage between switchings [pu^2/s^3]. It is about 10 for a swing of 0.1 pu at 1 Hz,
-/// and several hundred in the few hundredths of a second of the subtransient after a fault.
+/// Roughness of a grid's voltage between switchings [pu^2/s^3]. It is about 10 for a swing of 0.1 pu at 1 Hz.
+/// During the subtransient after a fault, which lasts a few hundredths of a second, it is several hundred.
 constexpr double kRoughness[] = {0.1, 1, 10, 100, 1e3, 1e4};
 constexpr double kFirstRoughness = 10;
 /// Step of the scan for switching times [sample intervals], and its roughnesses. If the scan misses a large

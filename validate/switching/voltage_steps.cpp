@@ -225,8 +225,8 @@ bool VoltageSteps::is_shared_out(const Switching& switching) const {
 }
 
 /// Returns whether the record's first step is unfiltered. Either a decay follows it, or it is large or
-/// isolated and begins too suddenly: a filtered step would spread over two intervals, or begin in the
-/// interval before.
+/// isolated and begins suddenly. A filtered step would spread over two intervals, or begin in the interval
+/// before.
 bool VoltageSteps::is_sharp(const Switching& first, double threshold) const {
   constexpr double kClear = 10, kBegins = 0.03;
   const auto k = static_cast<std::size_t>(

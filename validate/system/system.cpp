@@ -86,9 +86,9 @@ class Comparer {
   }
 
  private:
-  /// Returns the distance from a switching within which samples are not compared [s]: the filter's window
-  /// plus the range in which the cubic through the simulation's samples is wrong beside a step. Within this
-  /// distance, an error of the switching time by a fraction of a millisecond would be visible.
+  /// Returns the distance from a switching within which samples are not compared [s]. It is the filter's
+  /// window plus the range beside a step in which the cubic through the simulation's samples is wrong. Within
+  /// this distance, an error of the switching time by a fraction of a millisecond would be visible.
   [[nodiscard]] double filter_reach_at(const SystemTerminal& t) const {
     const double memory = sim::plant::memory(t.instruments);
     return memory > 0 ? memory + 2 * t.record.step() / kFine : undeclared_;
