@@ -402,7 +402,7 @@ class CsvReader {
   std::optional<Stamp> first_;
   double resolution_ =
       std::numeric_limits<double>::infinity();  ///< finest resolution of the times, in their unit
-  double hours_ = 0, last_in_hour_ = 0;         ///< of stamps with minutes and seconds only
+  double hours_ = 0, last_in_hour_ = 0;         ///< [s]; for stamps with minutes and seconds only
   std::optional<std::size_t> fraction_;         ///< column of FRACSEC
   std::vector<double> fractions_;
   std::map<std::string, int> words_, word_at_;  ///< words in place of numbers: count, and first line

@@ -65,7 +65,7 @@ struct StagedEvent {
 /// Samples at one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
 struct Record {
   std::string name;                  ///< file name without folder
-  std::string sha256;                ///< of the file's bytes (of a COMTRADE record: .cfg, then .dat)
+  std::string sha256;                ///< SHA-256 of the file's bytes (COMTRADE: .cfg, then .dat)
   RecordBase base;                   ///< bases of the per-unit values
   std::vector<double> t;             ///< [s], increasing, uniform
   std::vector<double> V, theta;      ///< [pu], [rad] (unwrapped)
@@ -152,8 +152,8 @@ struct ReadOptions {
 /// of the terminal are listed in `ignored`. Repairs (short gaps, repeated stamps, clock adjustments) are
 /// listed in `notes`. check_record (validate/check/check.hpp) checks the content. Throws InputError with
 /// every fault of the file and its lines or bytes. Faults are missing or repeated columns, columns without
-/// unit, lines of unequal length and too few samples. So are values that are not finite or missing for longer
-/// than kLongestGap, and times that do not increase or are unevenly spaced.
+/// unit, lines of unequal length and too few samples. Further faults are values that are not finite or
+/// missing for longer than kLongestGap, and times that do not increase or are unevenly spaced.
 Record read_record(const Source& source, const RecordBase& base, const ReadOptions& options = {});
 
 /// Reads a record, with the staged events that apply to the file. If the breaker is open during the whole

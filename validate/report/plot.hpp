@@ -34,11 +34,11 @@ struct PlotRule {
 };
 /// Plot with its axes, series and vertical lines.
 struct Plot {
-  std::string title;                 ///< above the plot
+  std::string title;                 ///< title above the plot
   PlotAxis x, y;                     ///< horizontal and vertical axis
   std::vector<PlotSeries> series;    ///< series, drawn in order
   std::vector<PlotRule> rules = {};  ///< vertical lines
-  double width = 480;                ///< of the plot area [px]
+  double width = 480;                ///< width of the plot area [px]
 };
 
 /// Plots side by side under a common legend that has each name once.

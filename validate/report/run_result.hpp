@@ -33,7 +33,7 @@ struct SeveralRecords {
 struct RunResult {
   std::filesystem::path file;          ///< the result file
   std::string table, network, preset;  ///< table and network of the run; named recipe
-  std::string title;                   ///< of the experiment; empty in results without one
+  std::string title;                   ///< title of the experiment; empty if the result has none
   std::int64_t seed = 0;               ///< seed of the run
   double noise = 0;                    ///< level of measurement noise; 0: none
   int generator = 0;                   ///< bus of the excluded generator; 0: none

@@ -70,7 +70,7 @@ struct Retrained {
   std::vector<RetrainedParameter> parameters;
   std::vector<RetrainedEvent> events;
   double error[2] = {0, 0}, middle = 0;  ///< RMS over shared parameters and held-out events [deviation]
-  double rms[2] = {0, 0};                ///< of P and Q over the held-out events [MW, Mvar]
+  double rms[2] = {0, 0};                ///< RMS error of P and Q over the held-out events [MW, Mvar]
   std::string sentence;
   [[nodiscard]] double fall() const { return error[0] / error[1]; }
 };

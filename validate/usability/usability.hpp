@@ -59,7 +59,8 @@ Usability check_usability(const plant::PlantModel& model, const std::vector<Oper
 /// Returns the least damped oscillation of uniformly sampled signals [signal][sample] of one system, by the
 /// matrix pencil method (Y. Hua, T. K. Sarkar, IEEE Trans. ASSP 38 (1990) 814). `rate`: samples per second;
 /// `accuracy`: error of a sample. The amplitude has the signals' unit. An oscillation counts if its amplitude
-/// exceeds that error, and its energy that of the residual of the decomposition. Empty if there is none.
+/// exceeds this error, and its energy exceeds the energy of the decomposition's residual. Empty if there is
+/// none.
 std::optional<Oscillation> least_damped_oscillation(const std::vector<std::vector<double>>& signals,
                                                     double rate, double accuracy);
 

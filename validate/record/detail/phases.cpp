@@ -194,7 +194,7 @@ class Combination {
   RawRecord& raw_;
   const RecordBase& base_;
   const std::string& file_;
-  std::optional<Unit> of_voltage_;  ///< if inferred from the values
+  std::optional<Unit> of_voltage_;  ///< unit of the voltages, if inferred from their values
 };
 
 }  // namespace

@@ -19,7 +19,7 @@ enum class Unit {
   minute,
   hour,
   day,
-  cycle,  ///< of the nominal frequency
+  cycle,  ///< cycle of the nominal frequency
   stamp,
   pu,
   kilovolt,

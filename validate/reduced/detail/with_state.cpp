@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Returns the switching times that would leave their range at the optimum of the event's state (active set),
-/// with their moves to the end of the range.
+/// Returns the indices of switching times that would leave their range at the optimum of the event's state,
+/// with their moves to the end of the range (active set).
 std::vector<std::pair<Index, double>> active_bounds(const event::FitEvent& event,
                                                     const EventSensitivities& sensitivities,
                                                     const std::vector<double>& priors) {

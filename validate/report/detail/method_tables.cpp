@@ -250,7 +250,7 @@ Table several_table(const Task& task) {
       {}};
   for (const auto& method : task.methods())
     for (const double level : task.levels()) {
-      std::map<std::int64_t, std::vector<SeveralRecords>> by_most;  // over seeds
+      std::map<std::int64_t, std::vector<SeveralRecords>> by_most;  // results of all seeds
       for (const auto* r : runs_of(task, {method, level}))
         for (const auto& s : r->several) by_most[s.at_most].push_back(s);
       for (const auto& [most, all] : by_most) {

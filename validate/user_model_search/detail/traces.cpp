@@ -54,7 +54,7 @@ std::vector<UserModelTrace> user_model_traces(const plant::PlantModel& model,
       for (const double v : x) d.push_back(scale * (v - x.front()));
       return d;
     };
-    std::vector<double> V;  // of the played-in curve, which is smooth across filtered samples
+    std::vector<double> V;  // deviation of the played-in curve, which is smooth across filtered samples
 
     for (std::size_t k = 0, segment = 0; k < t.t.size(); ++k) {
       while (segment < switchings.size() && t.t[k] > switchings[segment].time) ++segment;
