@@ -26,6 +26,8 @@ struct Range {
   ///< ends of the interval [unit]
   std::string unit = "";     ///< unit in messages; empty: none
   std::string meaning = "";  ///< definition of the key, in the schema (base/describe.hpp)
+  std::string pattern =
+      "";  ///< regular expression of a text, in the schema; the reader checks the text itself
 };
 
 /// Name in place of any name of a table, where keys are described (base/describe.hpp).

@@ -32,7 +32,7 @@ struct KeyForm {
   [[nodiscard]] bool like(const KeyForm& other) const {
     return type == other.type && list == other.list && size == other.size && words == other.words &&
            range.low == other.range.low && range.high == other.range.high && range.unit == other.range.unit &&
-           range.meaning == other.range.meaning;
+           range.meaning == other.range.meaning && range.pattern == other.range.pattern;
   }
 };
 

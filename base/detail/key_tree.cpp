@@ -19,6 +19,7 @@ Json schema_of(const KeyForm& form) {
   if (!form.words.empty()) one["enum"] = form.words;
   if (std::isfinite(form.range.low)) one["minimum"] = number_of(form.range.low);
   if (std::isfinite(form.range.high)) one["maximum"] = number_of(form.range.high);
+  if (!form.range.pattern.empty()) one["pattern"] = form.range.pattern;
   if (form.list) {
     one = {{"type", "array"}, {"items", one}};
     if (form.size > 0) one["minItems"] = one["maxItems"] = form.size;

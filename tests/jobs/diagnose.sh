@@ -43,6 +43,7 @@ status=0
 diff "$work/found/diagnosis.json" "$work/again/diagnosis.json" | grep '^[<>]' |
   grep -vE '"seconds": |"value": "(swingbank diagnose |[0-9-]+ [0-9:]+ UTC")' >"$work/differs" &&
   fail "two threads change the result: $(head -4 "$work/differs")"
+fits_schema_of diagnosis "$work/found/diagnosis.json"
 grep -q 'SEXS' "$work/found/report.html" || fail "the report does not name the exciter"
 python3 - "$work/found/diagnosis.json" <<'PYTHON'
 import json, sys
@@ -67,6 +68,7 @@ wait "$diagnosing" || status=$?
 grep -qx 'stopping' "$work/told" || fail "the signal is not acknowledged"
 grep -q 'Interrupted before a verdict' "$work/ended.txt" || fail "the end is not told"
 grep -q '"verdict": "interrupted"' "$work/ended/diagnosis.json" || fail "the JSON does not say that it was interrupted"
+fits_schema_of diagnosis "$work/ended/diagnosis.json"
 [[ -s $work/ended/report.html ]] || fail "no page after a signal"
 
 out=$work/out

@@ -81,6 +81,8 @@ MUTATIONS = {
         ('"GENROU"', '"GENROX"', "machine.effect"),
         ('"andes"', '"pslf"', "plant.conventions"),
         ("[machine]", "[converter]", "converter.effect"),
+        (END, '[nameplate]\nrecorded = "01.03.2026"\n', "nameplate.recorded"),
+        (END, '[nameplate]\nowner = " "\n', "nameplate.owner"),
         (END, '[[exciter]]\neffect = "SEXS"\nstandard = true\n', "[[exciter]]"),
         (END, '[exciter]\neffect = "SEXS"\nK = 200.0\n', "exciter.TB"),
         (END, '[exciter]\neffect = "TGOV1"\nstandard = true\n', "exciter.effect"),

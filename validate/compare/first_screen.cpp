@@ -64,6 +64,15 @@ report::Chips chips(const FirstScreen& s) {
   return all;
 }
 
+/// Returns the meaning of the marks and numbers of the chips, and the model that they judge.
+std::string marks_text(const FirstScreen& s) {
+  const Played& judged = s.after && !s.judge_before ? *s.after : *s.before;
+  return fmt::format(
+      "RMS error in multiples of the noise{}. Marks ({}): ✕ exceeds an engineering limit; ! exceeds "
+      "only the noise limit of a bin; ✓ within both.",
+      s.after ? fmt::format(", {} → {}", s.before->name, s.after->name) : "", judged.name);
+}
+
 /// Returns the bars of each event's worst channel before and after.
 report::Bars fall(const FirstScreen& s) {
   report::Bars bars{fmt::format("RMS error in multiples of the noise, worst channel of each event: {} → {}",
@@ -244,7 +253,7 @@ void first_screen(report::Document& document, const FirstScreen& s) {
   document.add(report::Opening{s.headline, s.reasons, s.tone});
   if (s.before && !s.before->events.empty()) {
     document.add(chips(s));
-    document.note("✕ exceeds an engineering limit; ! exceeds only the noise limit of a bin; ✓ within both.");
+    document.text(marks_text(s));
     large_charts(document, s);
     if (s.after && !s.after->events.empty()) document.add(fall(s));
   }

@@ -99,12 +99,12 @@ void bound(std::vector<ReportEvent>& events, compare::ErrorMap ReportChannel::*w
 nlohmann::json parameters_json(const fit::Fit& fit) {
   auto rows = nlohmann::json::array();
   for (const auto& p : fit.parameters)
-    rows.push_back({{"block", p.block},
+    rows.push_back({{"effect", p.block},
                     {"name", p.name},
                     {"unit", p.unit},
                     {"start", p.start},
                     {"value", p.value},
-                    {"error", p.error},
+                    {"standard_error", p.error},
                     {"low_95", p.low},
                     {"high_95", p.high},
                     {"at_bound", p.at_bound},

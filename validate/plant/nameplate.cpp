@@ -108,8 +108,9 @@ void read_field(Config& config, const Field& field, const std::string& key, Name
         config.require<double>(full, {1e-9, 1e9, std::string(field.unit), std::string(field.meaning)});
     return;
   }
-  const Range about{.meaning = std::string(field.meaning) +
-                               (field.kind == FieldKind::date ? " (2026, 2026-03 or 2026-03-01)" : "")};
+  const bool date = field.kind == FieldKind::date;
+  const Range about{.meaning = std::string(field.meaning) + (date ? " (2026, 2026-03 or 2026-03-01)" : ""),
+                    .pattern = date ? R"(^\d{4}(-(0[1-9]|1[0-2])(-(0[1-9]|[12]\d|3[01]))?)?$)" : R"(\S)"};
   if (!config.is_text(full)) {
     config.require<std::string>(full, about);
     return;
@@ -118,7 +119,7 @@ void read_field(Config& config, const Field& field, const std::string& key, Name
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     config.problem(full, full + " = \"\"", "it is empty",
                    "write the " + std::string(field.meaning) + ", or leave the key out");
-  else if (field.kind == FieldKind::date && !is_date(text))
+  else if (date && !is_date(text))
     config.problem(full, full + " = \"" + text + "\"",
                    "it is not a date of the calendar in the form of ISO 8601",
                    "write \"2026-03-01\", \"2026-03\" or \"2026\"");

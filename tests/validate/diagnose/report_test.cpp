@@ -153,7 +153,7 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
   ASSERT_EQ(parameters.size(), written.size());
   for (std::size_t i = 0; i < written.size(); ++i) {
     EXPECT_EQ(parameters[i][0],
-              written[i]["block"].get<std::string>() + " " + symbol(written[i]["block"], written[i]["name"]));
+              written[i]["effect"].get<std::string>() + " " + symbol(written[i]["effect"], written[i]["name"]));
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", written[i]["value"].get<double>());
     EXPECT_EQ(parameters[i][4], text);
