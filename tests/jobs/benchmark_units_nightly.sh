@@ -45,7 +45,7 @@ benchmark() {
   python3 - "$work/compare/compare.json" <<'END' || fail "$unit: the right model leaves more than noise"
 import json, sys
 d = json.load(open(sys.argv[1]))
-print(f"the right model: {d['bins_exceeding']} of {d['cells']} bins exceed what noise allows")
+print(f"the right model: {d['bins_exceeding']} of {d['bins']} bins exceed what noise allows")
 sys.exit(d["bins_exceeding"] > 2)
 END
   SECONDS=0 code=0
