@@ -1,5 +1,5 @@
 #pragma once
-// Child processes: forked copies of this process, and other programs, each started and waited for.
+// Child processes: forked copies of this process, and other programs that run to their end.
 #include <sys/types.h>
 
 #include <filesystem>
@@ -22,7 +22,7 @@ struct ProgramRun {
   enum class Output { shown, dropped, taken };
   Output output = Output::dropped;  ///< treatment of standard output
   bool silent = false;              ///< discard standard error
-  double limit = 0.0;               ///< time limit [s], then SIGKILL; 0: none; needs Output::taken
+  double limit = 0.0;               ///< time limit [s] before SIGKILL; 0: none; for Output::taken only
 };
 /// Result of `run_program`.
 struct ProgramEnd {

@@ -32,8 +32,8 @@ std::string place(const fs::path& name, const toml::source_position& p) {
 }
 
 std::string list(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
-/// Returns `remedy`, the words and a suggestion from `free`: "use one of: GENCLS, GENROU; did you mean
-/// GENROU?".
+/// Returns `remedy`, then `words`, then the word of `free` nearest to `word`: "use one of: GENCLS, GENROU;
+/// did you mean GENROU?".
 std::string choose_from(std::string_view word, const std::vector<std::string>& words,
                         const std::vector<std::string>& free, const std::string& remedy) {
   const std::string nearest = nearest_word(word, free);
@@ -101,7 +101,7 @@ std::string written(const toml::node& n) {
 /// Adds a problem for every key that was never read.
 void unknown(const toml::table& table, const std::string& prefix, const std::set<std::string>& asked,
              const fs::path& name, Problems& problems) {
-  std::vector<std::string> known, missing;  // a key that the table has is not suggested
+  std::vector<std::string> known, missing;  // keys that the table lacks; only these are suggested
   for (const auto& key : asked)
     if (key.starts_with(prefix) && key.find('.', prefix.size()) == std::string::npos) {
       known.push_back(key.substr(prefix.size()));
@@ -123,8 +123,8 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
   }
 }
 
-/// Largest number of parts of a dotted key. toml++ limits the nesting of values to 256. Dotted keys nest
-/// tables beyond that limit, and the recursive destructor of the tables would overflow the stack.
+/// Largest number of parts of a dotted key. toml++ limits the nesting of values to 256. Dotted keys can
+/// exceed that limit; the recursive destructor of the tables would then overflow the stack.
 constexpr int kMostKeyParts = 32;
 
 /// Scanner of a TOML text that counts the dots of each key outside strings and comments.
@@ -178,8 +178,8 @@ class KeyLengths {
   std::size_t at_ = 0, begin_ = 0, line_ = 1;
 };
 
-/// Parses the text, a second time after an error: toml++ reads numbers through a stream, which reports a
-/// failed allocation as a malformed number. An error that occurs twice is an error of the text.
+/// Parses the text; after an error, parses it once more. toml++ reads numbers through a stream, which reports
+/// a failed allocation as a malformed number. Only an error that recurs is an error of the text.
 toml::table parse(const std::string& text, const std::string& name) {
   try {
     return toml::parse(text, name);

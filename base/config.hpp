@@ -1,7 +1,6 @@
 #pragma once
-// Strict TOML reader. Keys are dotted paths ("fault.start"). Every problem is collected with
-// file:line:column, and raise() throws all of them together: missing keys, wrong types, values outside their
-// range, and unknown keys.
+// Strict TOML reader. Keys are dotted paths ("fault.start"). Every problem is recorded with file:line:column:
+// a missing or unknown key, a wrong type, a value outside its range. raise() throws all of them together.
 //   Config c(file);
 //   const double start = c.require<double>("fault.start", {0.0, 100.0, "s"});
 //   const auto seed = c.optional<std::int64_t>("seed", 1);
@@ -25,20 +24,21 @@ struct Range {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   ///< ends of the interval [unit]
   std::string unit = "";     ///< unit in messages; empty: none
-  std::string meaning = "";  ///< definition of the key, in the schema (base/describe.hpp)
+  std::string meaning = "";  ///< description of the key in the schema (base/describe.hpp)
   std::string pattern =
       "";  ///< regular expression of a text, in the schema; the reader checks the text itself
 };
 
-/// Name in place of any name of a table, where keys are described (base/describe.hpp).
+/// Placeholder for an arbitrary key name while a schema is derived (base/describe.hpp).
 inline const std::string kAnyName = "*";
 
-/// Words of a text that determines the other keys of its table, such as the name of an effect.
+/// Allowed values of a discriminator: a key whose value determines the other keys of its table, such as the
+/// name of an effect.
 struct Branch {
   std::vector<std::string> words;        ///< allowed words
-  std::vector<std::string> titles = {};  ///< their titles; empty: none
-  std::string opened_by = {};  ///< key of the file's own words, in the schema; empty: there are none
-  bool any_case = false;       ///< upper and lower case are the same
+  std::vector<std::string> titles = {};  ///< description of each word in the schema; empty: none
+  std::string opened_by = {};  ///< key whose presence allows further words in the schema; empty: none
+  bool any_case = false;       ///< whether case is ignored
 };
 
 /// TOML file that is read key by key.
@@ -49,8 +49,8 @@ class Config {
   /// Parses `text`. Messages cite `name` as the file, and relative paths refer to its folder. Throws
   /// InputError if the text is not TOML.
   Config(const std::string& text, const std::filesystem::path& name);
-  /// Config without a file, which notes what it is asked for (base/describe.hpp). It is never sound and
-  /// raises nothing; it has every key that it is asked for, or none.
+  /// Constructs a config without a file that records the keys that are read (base/describe.hpp). `trace`
+  /// determines whether has() returns true. sound() returns false; raise() throws nothing.
   explicit Config(std::shared_ptr<KeyTrace> trace);
 
   /// Returns the value of a required key. T: bool, std::int64_t, double (integers are accepted), std::string,
@@ -85,11 +85,11 @@ class Config {
   [[nodiscard]] bool is_text(const std::string& key) const;
   /// Returns the keys of a table in alphabetical order; empty if there is no such table.
   [[nodiscard]] std::vector<std::string> keys(const std::string& table) const;
-  /// The same for a table whose keys may be `known` ones only, or others too beside the key `opened_by`. The
-  /// caller checks them.
+  /// The same for a table with the keys `known`. If the file has the key `opened_by`, the table may have
+  /// other keys too. The caller checks the keys.
   [[nodiscard]] std::vector<std::string> keys(const std::string& table, const std::vector<std::string>& known,
                                               const std::string& opened_by = {}) const;
-  /// Returns the texts of a required list. Each may be the name of a table beside the key.
+  /// Returns the texts of a required list. A text may name a table at the same level as the key.
   std::vector<std::string> table_names(const std::string& key, const Range& about = {});
   /// Returns the place of a key's value, "file.toml:12:3", or the file's name if the key is missing.
   [[nodiscard]] std::string where(const std::string& key) const;

@@ -133,7 +133,7 @@ class Explorer {
     return all;
   }
 
-  /// Adds what follows from the outcomes of one decision to the tree.
+  /// Adds the consequences of one decision's outcomes to the tree, as conditions of the schema.
   void constrain(const Group& group) {
     const std::vector<Consequence> all = consequences(group);
     if (std::ranges::all_of(all, [](const auto& c) { return c.required.empty() && c.unknown.empty(); }))
@@ -152,7 +152,7 @@ class Explorer {
       context.push_back(has_outcome(a.decision, path, {a.outcome}));
     }
     if (!is_single(key)) return;
-    // One condition for each consequence, so that an error names its key, not all alternatives.
+    // One condition per consequence, so that a validator's error names the key instead of all alternatives.
     for (const Consequence& c : all) {
       Json follows = Json::array();
       std::map<KeyPath, Json> together;  // required keys by their table

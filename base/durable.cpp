@@ -109,7 +109,7 @@ void reserve(const fs::path& file, std::uint64_t bytes) {
   const fs::path temporary = temporary_name(file);
   const Descriptor d(open_new(temporary));
   if (d.get() < 0) raise_file_error(file, errno, "cannot write the file");
-  // Not posix_fallocate, which writes every block on file systems without fallocate.
+  // posix_fallocate would write every block on file systems without fallocate.
   const auto ask = [&] { return ::fallocate(d.get(), 0, 0, static_cast<off_t>(bytes)); };
   if (bytes == 0 || until_done(ask) == 0 || errno == EOPNOTSUPP) return;
   const int error = errno;
@@ -124,7 +124,7 @@ void flush_temporary(const fs::path& file) {
 
 namespace {
 
-/// Publishes a file. Calls `meanwhile` with the temporary name while another thread waits for the disk.
+/// Publishes a file. Meanwhile, calls `meanwhile` with the temporary name; another thread flushes the file.
 void publish_and(const fs::path& file, const std::function<void(const fs::path&)>& meanwhile) {
   const fs::path temporary = temporary_name(file);
   try {

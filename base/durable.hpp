@@ -15,8 +15,8 @@ std::filesystem::path temporary_name(const std::filesystem::path& file);
 /// Creates a folder and its parents. Throws InputError with the folder and the system's error text.
 void make_folder(const std::filesystem::path& folder);
 /// Creates the temporary file anew and allocates `bytes` of disk space. On failure, removes the temporary
-/// file and throws InputError with the system's error text (disk full, no permission), which HDF5 and MPI-IO
-/// do not pass on.
+/// file and throws InputError with the system's error text (disk full, no permission). HDF5 and MPI-IO would
+/// not report that text.
 void reserve(const std::filesystem::path& file, std::uint64_t bytes);
 /// Flushes the temporary file to the disk and renames it to its final name. On failure, removes the temporary
 /// file and throws InputError.
@@ -29,7 +29,7 @@ void flush_folder(const std::filesystem::path& folder);
 /// File that is written piece by piece. The destructor removes it unless it was published.
 class NewFile {
  public:
-  /// Creates the temporary file. All members throw InputError on failure, with `failure` as its first words.
+  /// Creates the temporary file. All members throw InputError on failure; its message begins with `failure`.
   explicit NewFile(std::filesystem::path file, std::string failure = "cannot write the file");
   ~NewFile();
   NewFile(const NewFile&) = delete;

@@ -20,7 +20,8 @@ bool is_pattern(const fs::path& file) {
   return file.filename().string().find_first_of("*?[") != std::string::npos;
 }
 
-/// Returns the example "configs/plants/x.toml" or "plants/x.toml"; for a pattern, its folder.
+/// Returns the example with the relative path `file` ("configs/plants/x.toml" or "plants/x.toml"). For a
+/// pattern, returns its folder. Empty if there is none.
 fs::path example_of(const fs::path& file, const fs::path& examples) {
   if (examples.empty() || file.is_absolute()) return {};
   std::error_code ignored;
@@ -57,7 +58,7 @@ fs::path example_configs() {
   fs::path own = own_executable(error).parent_path();
   if (error) return {};
   if (own.filename().string().starts_with("x86-64-v")) own = own.parent_path();  // instruction-set folder
-  // The second path is that of the build folder, for any layout of an installation.
+  // The first path is that of an installation, the second that of a build folder.
   for (const char* way : {SWINGBANK_CONFIGS_FROM_PROGRAMS, "../share/swingbank/configs"}) {
     const fs::path folder = fs::canonical(own / way, error);
     if (!error && fs::is_directory(folder, error)) return folder;

@@ -22,7 +22,7 @@ Inputs& inputs() {
   return all;
 }
 
-/// Returns the absolute path without links and dots; also for a file that does not exist yet.
+/// Returns the absolute path with links, "." and ".." resolved. The file need not exist yet.
 fs::path resolved(const fs::path& file) {
   std::error_code error;
   fs::path found = fs::weakly_canonical(fs::absolute(file, error), error);

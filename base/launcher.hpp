@@ -1,5 +1,5 @@
 #pragma once
-// Launchers of several ranks (mpirun, srun), as far as this process's environment shows them, without MPI.
+// Detection of a launcher of several ranks (mpirun, srun) from environment variables, without calls of MPI.
 #include <cstdlib>
 #include <cstring>
 
@@ -12,7 +12,7 @@ inline bool launched() {
   return false;
 }
 
-/// Returns true for rank 0 of a launcher and for a process without one: the process that prints.
+/// Returns whether this process prints: rank 0, or a process without a launcher.
 inline bool is_first_rank() {
   for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"})
     if (const char* rank = std::getenv(name)) return std::strcmp(rank, "0") == 0;

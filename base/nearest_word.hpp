@@ -27,8 +27,8 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return last.back();
 }
 
-/// Returns the word of `words` nearest to `wanted`, ignoring case; empty if none is near. Words that begin
-/// with `wanted` (three letters or more) come before all others.
+/// Returns the word of `words` with the smallest edit distance to `wanted`, ignoring case; empty if none is
+/// near. Words that begin with `wanted` (at least three letters) are preferred.
 inline std::string nearest_word(std::string_view wanted, const std::vector<std::string>& words) {
   const auto lower = [](std::string_view text) {
     std::string small(text);

@@ -19,7 +19,7 @@ fs::path list_file(const fs::path& folder, const std::string& command) {
   return folder / (".swingbank-" + command);
 }
 
-/// Reads lines of "hash name". Ignores names with a folder, which this program does not write.
+/// Reads lines of "hash name". Ignores names that contain a folder, because this program never writes them.
 std::map<std::string, std::string> read_list(const fs::path& file) {
   std::map<std::string, std::string> all;
   std::error_code error;
@@ -49,7 +49,8 @@ OutputFolder::OutputFolder(fs::path folder, std::string command, const std::vect
       folder_ / kLockFile,
       LockWords{"output folder in use", "--out " + folder_.string(), "wait for it, or give another folder"},
       std::chrono::milliseconds(0));
-  earlier_ = read_list(list_file(folder_, command_));  // again: the previous holder may have changed it
+  // Read again, because the previous holder of the lock may have changed the list.
+  earlier_ = read_list(list_file(folder_, command_));
 }
 
 OutputFolder::~OutputFolder() {

@@ -25,7 +25,7 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Returns the path of a result and registers it as written by this run.
+  /// Returns the path of the result file `name` and registers it as written by this run.
   std::filesystem::path file(const std::string& name);
   /// Returns the path of the folder.
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }

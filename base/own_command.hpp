@@ -1,5 +1,5 @@
 #pragma once
-// Other commands of this build, run as separate programs, so that calibrate and add need not link the
+// Execution of this build's other commands as separate programs. Thus calibrate and add need not link the
 // libraries of train and generate.
 #include <unistd.h>
 
@@ -16,8 +16,8 @@
 
 namespace swingbank::jobs {
 
-/// Folder of the commands if the running executable is another program, such as Python; empty: the
-/// executable's.
+/// Folder of the commands, set if the running executable is another program, such as Python. If empty, the
+/// commands are in the executable's folder.
 inline std::filesystem::path commands_folder;
 
 /// Returns the folder of the commands of this build. Throws InputError if the executable's path is unknown.

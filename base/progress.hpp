@@ -8,14 +8,15 @@
 
 namespace swingbank {
 
-/// Progress counter that prints to standard error: at most every 0.2 s as a bar, every 5 s as lines.
+/// Progress counter that prints to standard error: a bar at most every 0.2 s, or lines at most every 5 s.
 class Progress {
  public:
   /// Form of the output; automatic: a bar on a terminal, otherwise lines.
   enum class Mode { automatic, bar, lines, none };
   /// Returns the values of --progress, in the order of Mode.
   static const std::vector<std::string>& words();
-  /// `total`: number of items; `done`: items that earlier runs have completed; `unit`: "draws".
+  /// `unit`: name of the items, such as "draws"; `total`: number of items; `done`: items that earlier runs
+  /// have completed.
   Progress(Mode mode, std::string unit, std::uint64_t total, std::uint64_t done);
   ~Progress() { finish(); }
   /// Counts `count` more items; prints if the last output is old enough.

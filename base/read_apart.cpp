@@ -20,9 +20,9 @@
 namespace swingbank {
 namespace {
 
-constexpr double kPatience = 300.0;          ///< wall-clock limit [s], for a slow disk or a stopped process
-constexpr rlim_t kProcessorTime = 30;        ///< limit of processor time [s]: endless loop on damaged files
-constexpr std::uintmax_t kSlow = 5'000'000;  ///< lowest reading rate of any reader [bytes/s]
+constexpr double kPatience = 300.0;          ///< wall-clock limit [s]: slow disk or stopped process
+constexpr rlim_t kProcessorTime = 30;        ///< processor time limit [s]: endless loop on a damaged file
+constexpr std::uintmax_t kSlow = 5'000'000;  ///< rate by which both limits grow with the file size [bytes/s]
 constexpr int kProblemsReported = 3;         ///< exit code: the output is a list of problems
 constexpr const char* kWhat = "a file that cannot be read";
 constexpr const char* kRemedy = "get the file again from where it came from, or make it again";

@@ -87,8 +87,8 @@ bool RunLock::try_lock() {
                     "use another disk or mount with lock support (Lustre: -o flock)"});
 }
 
-/// Returns whether the locked file still has this name. Another holder may have removed it between open and
-/// lock.
+/// Returns whether the locked file is still the file of this name. Another holder may have removed it between
+/// open and lock.
 bool RunLock::is_the_one_of_that_name() const {
   struct stat held {
   }, named{};
@@ -100,7 +100,8 @@ void RunLock::refuse() const {
   throw InputError({words_.what, words_.where, "locked by " + owner_in(fd_), words_.remedy});
 }
 
-/// Writes the holder into the file. Ignores errors such as a full disk, because the text is only informative.
+/// Writes this process into the file as the holder. Ignores errors such as a full disk, because the text is
+/// only informative.
 void RunLock::write_owner() const {
   const std::string owner =
       this_process() + (kind_ == Kind::shared ? " or another part of the dataset" : "") + "\n";

@@ -1,6 +1,6 @@
 #pragma once
-// Exclusive or shared lock on a folder: flock(2) on a separate file, because a run replaces other files
-// (journal, checkpoint), and a lock on them would be lost.
+// Exclusive or shared lock on a folder, by flock(2) on a separate file. A lock on the journal or checkpoint
+// would be lost, because a run replaces these files.
 #include <chrono>
 #include <filesystem>
 #include <string>
@@ -20,19 +20,19 @@ class RunLock {
   enum class Kind { alone, shared };
 
   /// Creates `file` if it is missing (its folder must exist), locks it and writes the holder into it:
-  /// process, host, Slurm job. Retries a held lock for `patience`, because a run that was just ended may
-  /// still be exiting. Throws InputError with the holder if the lock stays held, and with the system's error
-  /// text if the file system does not support locks.
+  /// process, host, Slurm job. If another process holds the lock, retries for `patience`, because that
+  /// process may be exiting. Then throws InputError with the holder. If the file system does not support
+  /// locks, throws InputError with the system's error text.
   RunLock(std::filesystem::path file, LockWords words,
           std::chrono::milliseconds patience = std::chrono::seconds(5), Kind kind = Kind::alone);
   /// Releases the lock. The kernel also releases it when the last process with the open file ends, in any
-  /// way; a forked child inherits the lock. The file remains, because two processes could each lock a removed
-  /// and recreated file.
+  /// way; a forked child inherits the lock. The file remains: after a removal, one process could lock the
+  /// removed file and another its successor of the same name.
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
-  /// Removes the file if this object created it, or always with `always`. For folders that no run locks any
-  /// more: a refused folder, or a folder with complete results.
+  /// Removes the file if this object created it or `always` is true. For folders that no later run locks: a
+  /// rejected folder, or a folder with complete results.
   void withdraw(bool always = false);
 
  private:

@@ -6,7 +6,7 @@
 
 namespace swingbank {
 
-/// Returns JSON as text that ends with a line break, for files that are read by people too.
+/// Returns the schema as indented text that ends with a line break, because people read it too.
 std::string schema_text(const nlohmann::ordered_json& schema);
 
 }  // namespace swingbank

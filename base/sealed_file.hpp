@@ -1,6 +1,6 @@
 #pragma once
-// Files with a checksum: a JSON header and raw single-precision arrays, written atomically, so that the last
-// valid file survives a kill at any moment.
+// Files of a JSON header and raw single-precision arrays with a checksum. They are written atomically: if the
+// program is killed, the last valid file remains.
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
@@ -15,7 +15,7 @@ struct SealedKind {
   const char *what, *magic, *remedy;  ///< name in messages; first bytes; remedy
 };
 
-/// Exception of a consumer that cannot use a file's content, with the reason.
+/// Exception for file content that cannot be used. The callbacks of `read_sealed` may throw it.
 struct Unusable {
   std::string why;  ///< reason for the message
 };

@@ -1,5 +1,5 @@
 #pragma once
-// Graceful stop on SIGTERM, SIGINT and SIGUSR1: the program finishes the current shards or ends the current
+// Graceful stop on SIGTERM, SIGINT and SIGUSR1. The program finishes the current shards or ends the current
 // fits, saves its state and exits with code 2.
 #include <unistd.h>
 
@@ -21,8 +21,8 @@ inline void say_stopping() {
     const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
 }
 }  // namespace detail
-/// Installs handlers that record stop signals; the current work is finished. A second SIGINT ends the
-/// process.
+/// Installs handlers that record stop signals, so that the program can finish the current work. A second
+/// SIGINT ends the process.
 inline void catch_stop_signals() {
   detail::interruptible = 0;
   detail::first_rank = is_first_rank() ? 1 : 0;
@@ -50,9 +50,9 @@ inline bool interruption_asked() { return detail::interruptible != 0 && stop_ask
 /// Asks the current work to end at its next interruption point, as a stop signal does.
 inline void ask_to_stop() { detail::stop_asked = 1; }
 
-/// Makes the work of its lifetime interruptible: Ctrl-C ends it at its next interruption point. For a host
-/// program with handlers of its own, such as Python: the destructor restores them. A thread other than the
-/// main one leaves the handler unchanged.
+/// Guard that makes work during its lifetime interruptible: Ctrl-C ends it at the next interruption point.
+/// The destructor restores the handlers of the host program, such as Python. A thread other than the main one
+/// leaves the handler unchanged.
 class InterruptOnSigint {
  public:
   InterruptOnSigint() {

@@ -1,6 +1,5 @@
 #pragma once
-// Keys that a reader asks for in one pass over a config without a file, and the decisions that it makes on
-// the way.
+// Record of one call of a config-reading function without a file: the keys that it reads, and its decisions.
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -15,8 +14,8 @@
 
 namespace swingbank {
 
-/// Path of a key: names of tables and key; "*" any name, "[]" the elements of an array, "=WORD" the keys of a
-/// table whose branch is WORD.
+/// Path of a key: the names of the tables and the key. "*" is any name, "[]" the elements of an array, and
+/// "=WORD" the keys of a table whose discriminator (Branch) has the value WORD.
 using KeyPath = std::vector<std::string>;
 
 /// Allowed values of a key.
@@ -26,9 +25,9 @@ struct KeyForm {
   std::size_t size = 0;  ///< number of elements of a list; 0: any
   Range range;
   std::vector<std::string> words;      ///< allowed texts; empty: all
-  nlohmann::ordered_json otherwise{};  ///< value where the key is missing; null: unknown
-  bool varies = false;                 ///< passes differ in that value
-  /// Whether the forms are equal but for the value of a missing key.
+  nlohmann::ordered_json otherwise{};  ///< default value; null: unknown
+  bool varies = false;                 ///< whether the default differs between passes
+  /// Returns whether the forms are equal except for the default value.
   [[nodiscard]] bool like(const KeyForm& other) const {
     return type == other.type && list == other.list && size == other.size && words == other.words &&
            range.low == other.range.low && range.high == other.range.high && range.unit == other.range.unit &&
@@ -40,15 +39,16 @@ struct KeyForm {
 struct KeyDecision {
   KeyPath path;  ///< key
   std::vector<nlohmann::ordered_json>
-      values;               ///< values of the key; empty: whether it is present, or missing
-  bool otherwise = false;   ///< the first value is that of a missing key
-  bool branch = false;      ///< every value has keys of its own
-  std::size_t outcome = 0;  ///< given outcome
+      values;               ///< values of the key; empty: the decision is whether the key is present
+  bool otherwise = false;   ///< whether a missing key counts as the first value
+  bool branch = false;      ///< whether each value has its own keys
+  std::size_t outcome = 0;  ///< outcome of this pass
   [[nodiscard]] std::size_t outcomes() const { return values.empty() ? 2 : values.size(); }
   [[nodiscard]] std::string id() const;
 };
 
-/// One pass of a reader. Outcomes are numbered from 0; a presence is 0: present, 1: missing.
+/// Record of one pass: one call of the config-reading function. Outcomes are numbered from 0. For the
+/// presence of a key, 0 is present and 1 missing.
 class KeyTrace {
  public:
   struct Key {
@@ -56,15 +56,15 @@ class KeyTrace {
     KeyForm form;
     bool required;
   };
-  /// Table whose keys depend on the branch, or have any name.
+  /// Table whose keys depend on a discriminator, or have arbitrary names.
   struct Table {
     KeyPath path;
-    std::string key;                         ///< key of the branch; empty: none
-    std::vector<std::string> words, titles;  ///< its words with their titles
-    std::string opened_by;                   ///< key beside which other words or names are possible
+    std::string key;                         ///< discriminator; empty: none
+    std::vector<std::string> words, titles;  ///< its values and their descriptions
+    std::string opened_by;                   ///< key whose presence allows other words or names
   };
-  /// `outcomes`: outcomes by decision, 0 where none is given. `arrays`: whether values of more than one kind
-  /// are arrays or texts.
+  /// `outcomes`: outcome of each decision by its id; a missing one is 0. `arrays`: for a value that may be a
+  /// table, an array or a text, whether it is an array or text.
   KeyTrace(std::map<std::string, std::size_t> outcomes, bool arrays)
       : outcomes_(std::move(outcomes)), arrays_(arrays) {}
 
@@ -82,7 +82,7 @@ class KeyTrace {
   std::vector<Key> keys;
   std::vector<KeyDecision> decisions;
   std::vector<Table> tables;
-  std::set<KeyPath> optional;  ///< keys of names(), which may be missing
+  std::set<KeyPath> optional;  ///< keys that names() returned; they may be missing
 
  private:
   [[nodiscard]] KeyPath path_of(const std::string& key) const;
@@ -90,7 +90,7 @@ class KeyTrace {
   void add(const std::string& key, KeyForm form, bool required);
   std::map<std::string, std::size_t> outcomes_;
   bool arrays_;
-  std::map<KeyPath, std::string> branches_;  ///< word of each table with a branch
+  std::map<KeyPath, std::string> branches_;  ///< value of the discriminator, by table
 };
 
 template <class T>

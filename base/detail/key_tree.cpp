@@ -33,9 +33,10 @@ Json schema_of(const KeyForm& form) {
   return one;
 }
 
-/// Returns alternatives with their conditions: a value is checked against the alternative whose condition it
-/// meets, so that an error names its key. `all` has what every alternative requires. With `tables`, editors
-/// that know no conditions find the alternatives' keys in an anyOf, which {} always fulfils.
+/// Returns the schema of conditional alternatives: a value is validated against the alternative whose
+/// condition it meets, so that an error names the key. `all`: requirements common to all alternatives.
+/// `tables`: adds an anyOf with the alternatives' keys, for editors that do not evaluate conditions. Its
+/// member {} accepts every value.
 Json choose(const std::vector<std::pair<Json, Json>>& alternatives, Json all, bool tables) {
   Json any = Json::array({Json::object()}), conditions = Json::array();
   for (const auto& [condition, schema] : alternatives) {
@@ -47,7 +48,8 @@ Json choose(const std::vector<std::pair<Json, Json>>& alternatives, Json all, bo
   return all;
 }
 
-/// Returns alternatives of different types; anyOf if types coincide.
+/// Returns the schema of alternatives that the value's type distinguishes; an anyOf if two alternatives have
+/// the same type.
 Json choose_by_type(const Json& alternatives, bool tables) {
   if (alternatives.size() == 1) return alternatives.front();
   std::vector<std::pair<Json, Json>> by_type;
@@ -109,8 +111,8 @@ void KeyTree::add(const KeyTrace& pass) {
     else if (!key.form.otherwise.is_null() && key.form.otherwise != same->otherwise)
       same->varies = true;
     if (!key.required) continue;
-    // A table with a required key is required too, unless it has any name or number. A key that is read
-    // because it is present requires no table.
+    // A table with a required key is itself required, unless its name is arbitrary or it is an array element.
+    // A key that is read only because it is present does not make its table required.
     for (std::size_t k = way.size(); k-- > 0 && !is_any(key.path[k]);) {
       if (way[k]->last_needed_ != pass_) ++way[k]->needed_;
       way[k]->last_needed_ = pass_;
@@ -165,7 +167,7 @@ Json KeyTree::object(const std::vector<const KeyTree*>& parts, const std::string
         continue;
       }
       properties[name] = node->value(definitions);
-      if (!word.empty() && part == this && node->is_table()) {  // a table that all branches share
+      if (!word.empty() && part == this && node->is_table()) {  // a table common to all branches
         definitions[name] = properties[name];
         properties[name] = {{"$ref", "#/definitions/" + name}};
       }

@@ -11,7 +11,7 @@
 
 namespace swingbank {
 
-/// Table or key, with what the passes have in common.
+/// Node of the tree, a table or a key, with the results of all passes.
 class KeyTree {
  public:
   using Json = nlohmann::ordered_json;
@@ -25,8 +25,9 @@ class KeyTree {
   void constrain(const KeyPath& path, Json condition) {
     at(path).conditions_.push_back(std::move(condition));
   }
-  /// Returns the paths of all tables and keys, and of those that every pass with their table requires.
+  /// Returns the paths of all tables and keys.
   [[nodiscard]] std::set<KeyPath> asked() const { return paths(false); }
+  /// Returns the paths of the tables and keys that are required in every pass that reads their table.
   [[nodiscard]] std::set<KeyPath> required() const { return paths(true); }
   /// Returns the schema of the table; schemas of branches are added to `definitions`.
   [[nodiscard]] Json schema(Json& definitions) const;
@@ -49,8 +50,8 @@ class KeyTree {
   std::vector<KeyForm> forms_;
   std::vector<Json> conditions_;
   KeyTrace::Table branch_;
-  bool asked_for_ = false;              ///< some pass read it only because it is present
-  int pass_ = 0;                        ///< number of passes, of the root
+  bool asked_for_ = false;              ///< whether a pass read it only because it is present
+  int pass_ = 0;                        ///< number of passes so far; used in the root
   int touched_ = 0, last_touched_ = 0;  ///< passes that read a key of this table, and the last of them
   int needed_ = 0, last_needed_ = 0;    ///< passes that require it, and the last of them
 };
