@@ -27,7 +27,7 @@ std::vector<std::pair<std::string, fs::path>> named_files(const DatasetConfig& c
   return files;
 }
 
-/// Returns a file as JSON. A text that is not UTF-8, which JSON cannot represent, is converted from Latin-1.
+/// Returns a file as JSON. JSON requires UTF-8; any other text is read as Latin-1 and converted.
 ordered_json json_of(const CardFile& f) {
   try {
     (void)nlohmann::json(f.text).dump();

@@ -20,13 +20,13 @@ struct Card {
   std::vector<CardFile> files;
   Overrides overrides;
   std::string config_hash, kernel;             ///< as in dataset.json
-  std::map<std::string, std::string> made_by;  ///< software, compiler, MPI, HDF5, host, processor: by name
+  std::map<std::string, std::string> made_by;  ///< by name: software, compiler, MPI, HDF5, host, processor
 };
 
 /// Replaces every occurrence of a file name in quotes. Returns false if there is none.
 bool replace_name(std::string& text, const std::string& from, const std::string& to);
-/// Returns the card of a config. Throws InputError if a file cannot be read, or if the config writes its name
-/// with escapes, which cannot be replaced.
+/// Returns the card of a config. Throws InputError if a named file cannot be read, or if the config writes a
+/// file name with escape sequences, because `replace_name` does not find such a name.
 Card card_of(const DatasetConfig& config, const std::string& kernel,
              const std::map<std::string, std::string>& made_by);
 /// Writes card.json into the folder.

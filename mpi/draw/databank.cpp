@@ -28,7 +28,7 @@ Neighbours make_neighbours(const DatasetConfig& config) {
   return {low, width, std::max(config.databank.distance, 1e-300)};
 }
 
-/// Candidates per batch, after which stop signals are checked, and per parallel task.
+/// Number of candidates per batch (stop signals are checked after each batch), and per parallel task.
 constexpr std::uint64_t kBatch = 8192, kPiece = 256;
 
 std::string reasons(const Databank& bank) {
@@ -37,9 +37,9 @@ std::string reasons(const Databank& bank) {
   return text;
 }
 
-/// Candidate sample with its tests that do not depend on other candidates of the batch.
+/// Candidate sample with the results of the tests that do not depend on other candidates of the batch.
 struct Candidate {
-  std::vector<double> x, measured;  ///< in the parameters' units, and in the units of the distance
+  std::vector<double> x, measured;  ///< values in parameter units; in units of the distance
   std::string why;                  ///< reason why it is inadmissible; empty if admissible
   bool near = false;                ///< whether it is too close to a sample of an earlier batch
 };
@@ -60,15 +60,17 @@ void draw_one(const DatasetConfig& config, std::uint64_t number, BoxedPlant& pla
   c.why = objection(config, plant.plant());
 }
 
-/// Forecast of the draws for all points, to abort an infeasible request early. With n points, the share of
-/// admissible draws that are far enough from all of them is modelled as \f$ e^{-n/n_0} \f$. This fits the
-/// draws for 15,000 to 240,000 points of the thesis's box at a distance of 0.7 within 8 %.
+/// Forecast of the number of candidates for the requested samples, to abort an infeasible request early. The
+/// model: with n accepted samples, the share \f$ e^{-n/n_0} \f$ of the admissible candidates is far enough
+/// from all of them. For the thesis's box and a distance of 0.7, it predicts the number of candidates for
+/// 15,000 to 240,000 samples within 8 %.
 class Forecast {
  public:
   Forecast(std::uint64_t points, double patience)
       : points_(static_cast<double>(points)), patience_(patience) {}
-  /// Returns a lower estimate of the admissible draws for all points, from those so far; nothing while too
-  /// few candidates were rejected for an estimate.
+  /// Returns a lower estimate of the admissible candidates needed in total. `reached`: samples accepted so
+  /// far; `admissible`: admissible candidates so far. Returns nothing until kEnoughTooClose candidates were
+  /// too close.
   [[nodiscard]] std::optional<double> draws(double reached, double admissible) const {
     const double too_close = admissible - reached;
     if (too_close < kEnoughTooClose) return {};
@@ -78,7 +80,7 @@ class Forecast {
       const double n0 = std::sqrt(low * high);
       (n0 * std::expm1(std::min(reached / n0, 500.0)) > admissible ? low : high) = n0;
     }
-    // Margins: three standard errors of the count, and the error of the model.
+    // Margins: three standard errors of the count of close candidates, and kTrust for the model error.
     const double n0 = high * (1.0 + 3.0 / std::sqrt(too_close)) * kTrust;
     return n0 * std::expm1(std::min(points_ / n0, 500.0));
   }
@@ -139,7 +141,7 @@ class Drawer {
         },
         [](int) {});
   }
-  /// Accepts candidates in order, so that the points equal those of sequential drawing.
+  /// Accepts candidates in order, so that the samples equal those of sequential drawing.
   void settle_batch() {
     const std::uint64_t first = bank_.candidates;
     std::vector<const Candidate*> accepted;
@@ -188,7 +190,7 @@ class Drawer {
   double patience_;  ///< largest number of admissible candidates
   Forecast forecast_;
   Databank bank_;
-  Neighbours settled_, newest_;  ///< points of earlier batches, and of this one
+  Neighbours settled_, newest_;  ///< samples of earlier batches; of this batch
   std::vector<Candidate> batch_;
   std::vector<BoxedPlant> plants_;  ///< one per thread
 };

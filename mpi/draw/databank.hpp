@@ -2,7 +2,7 @@
 // Databank: parameter sets drawn uniformly from their boxes with a minimum Euclidean distance, in raw
 // parameter units or box widths (`databank.scale`), by Poisson-disk dart throwing. Candidate k is a pure
 // function of (seed, k). Candidates are accepted in order, so the first n samples depend neither on the total
-// number nor on the computer. A databank sample is one parameter set.
+// number nor on the computer. A "databank sample" is one parameter set.
 #include <map>
 #include <string>
 #include <vector>
@@ -13,7 +13,7 @@ namespace swingbank::mpi::draw {
 
 /// Accepted databank samples and counts of the rejected candidates.
 struct Databank {
-  std::size_t dimensions = 0;                    ///< number of parameters, including fixed ones
+  std::size_t dimensions = 0;                    ///< parameters per sample, including fixed ones
   std::vector<double> values;                    ///< samples x dimensions
   std::uint64_t candidates = 0;                  ///< number of candidates generated
   std::uint64_t too_close = 0;                   ///< candidates closer than the minimum distance

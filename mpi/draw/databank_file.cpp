@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kFormat = "swingbank-databank-1";
 constexpr const char* kDrawAnew = "run swingbank databank with this config again";
 
-/// Returns the hash of everything that determines the points, except their number.
+/// Returns the hash of everything that determines the samples, except their number.
 std::string databank_hash(const DatasetConfig& c, const sim::plant::Plant& base) {
   std::string text = fmt::format("{} {} {} {:.17g} {}\n", c.model, c.seed,
                                  static_cast<int>(c.databank.policy), c.databank.distance, c.databank.scaled);

@@ -1,5 +1,5 @@
 #pragma once
-// Databank file: drawn once, and read by all programs that simulate its samples (docs/reference/formats.md).
+// Databank file, written once and read by all programs that simulate its samples (docs/reference/formats.md).
 #include <filesystem>
 
 #include "mpi/draw/databank.hpp"

@@ -39,8 +39,8 @@ std::string parameter_list(const sim::Effect& e) {
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// Reads a table of boxes: "name = [low, high]" is sampled, "name = value" is fixed. The parameters' records
-/// give the allowed ranges. `owner`: the effect, nullptr for the machine.
+/// Reads a table of parameters: "name = [low, high]" is sampled, "name = value" is fixed. The effect's
+/// parameter list gives the allowed ranges. `owner`: the effect; nullptr for the machine.
 void read_box(Config& c, const std::string& table, const sim::Effect& effect, const sim::Effect* owner,
               std::vector<Box>& box) {
   std::vector<Box> found;
@@ -72,7 +72,7 @@ void read_box(Config& c, const std::string& table, const sim::Effect& effect, co
 /// Returns whether an effect is a machine with a rotor. Records contain rotor angles, which converters lack.
 bool is_machine(const sim::Effect& effect) { return effect.slot == sim::Slot::machine && !effect.converter; }
 
-/// Returns whether parameters of an effect beside the machine can be sampled.
+/// Returns whether an effect other than the machine may have sampled parameters.
 bool is_varied(const sim::Effect& effect) {
   return effect.slot == sim::Slot::transformer || sim::is_control(effect.slot);
 }
@@ -229,7 +229,8 @@ void read_fault(Config& c, FaultConfig& f) {
       c.optional<std::int64_t>("fault.per_point", 1, count("faults for each point of the databank")));
 }
 
-/// Reads a time constant of the frequency filter, which only the channel frequency has.
+/// Reads a time constant of the frequency filter. Records a problem if it is given but the channel frequency
+/// is not recorded.
 void read_time_constant(Config& c, const std::string& key, bool frequency, double& value) {
   if (!frequency && !c.has(key)) return;
   value = c.require<double>(key, {1e-3, 100.0, "s", "time constant of the filter of the channel frequency"});

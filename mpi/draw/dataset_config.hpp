@@ -13,7 +13,7 @@
 
 namespace swingbank::mpi::draw {
 
-/// Admissible parameter sets: physical ones only, or all that the equations allow.
+/// Policy for parameter sets: only physical ones are admissible, or all that the equations allow.
 enum class Policy { physical, literal };
 /// Number of generators that vary in an event.
 enum class Vary { one, all };
@@ -29,9 +29,9 @@ struct Box {
 /// [databank]: sampling of the parameter sets.
 struct DatabankConfig {
   Policy policy = Policy::physical;
-  double distance = 0.0;  ///< smallest Euclidean distance between two points; 0: none
-  bool scaled = false;    ///< distance in units of each box's width, else in the parameters' own units
-  double candidates_per_point = 20.0;  ///< largest number of admissible candidates per point
+  double distance = 0.0;               ///< minimum Euclidean distance of two samples; 0: none
+  bool scaled = false;                 ///< distance in box widths, else in the parameters' units
+  double candidates_per_point = 20.0;  ///< largest number of admissible candidates per sample
 };
 
 /// [fault]: short circuits of the dataset.
@@ -41,7 +41,7 @@ struct FaultConfig {
   double start = 2.0;                     ///< [s]
   double shortest = 0.05, longest = 0.2;  ///< duration [s]
   double r = 0.0, x = 0.0;                ///< fault impedance [pu on the network's base]; 0: bolted
-  std::uint64_t per_point = 1;            ///< faults simulated for each databank point
+  std::uint64_t per_point = 1;            ///< faults simulated for each databank sample
 };
 
 /// [record]: recorded channels and sampling.
@@ -56,11 +56,11 @@ struct RecordConfig {
   [[nodiscard]] std::size_t samples() const;
 };
 
-/// [operating_point]: random operating points. All quantities are uniformly distributed; those without a
-/// range keep their values of the case file.
+/// [operating_point]: random operating points. All quantities are uniformly distributed; a quantity without a
+/// range keeps its value of the case file.
 struct OperatingPointConfig {
   std::uint64_t per_block = 2;                     ///< draws that share one operating point
-  double loads_low = 1.0, loads_high = 1.0;        ///< common factor of all loads and all dispatch
+  double loads_low = 1.0, loads_high = 1.0;        ///< common factor of all loads and of all generators' P
   double load_spread = 0.0;                        ///< individual factor of each load: 1 -+ this
   double dispatch_low = 1.0, dispatch_high = 1.0;  ///< individual factor of each generator's P
   double voltage = 0.0;                            ///< change of each voltage setpoint: -+ this [pu]
@@ -83,15 +83,16 @@ struct Overrides {
 /// Values of a dataset's config.
 struct DatasetConfig {
   std::filesystem::path file, raw, dyr;
-  Overrides overrides;               ///< as given; the other members already contain them
+  Overrides overrides;               ///< as given; already applied to the other members
   bool psse = true;                  ///< convention of PSS/E, else of ANDES
   sim::grid::CaseOptions grid_case;  ///< treatment of an incomplete raw or dyr, as by `simulate`
-  bool widen_limits = false;         ///< limits that the operating point violates are widened
+  bool widen_limits = false;         ///< widen limits that the operating point violates
   Vary vary = Vary::one;
   std::vector<int> generators;   ///< bus numbers of the machines that vary
-  std::vector<std::string> ids;  ///< unit at each bus; "": the only one; empty list: "" for all
+  std::vector<std::string> ids;  ///< machine id at each bus; "": the only machine; empty list: "" for all
   std::string model;             ///< machine model of these units
-  /// Parameters of the machine in record order, then of other effects by slot, name and record.
+  /// Parameters of the machine in the order of its parameter list, then those of other effects, sorted by
+  /// slot, effect name and parameter list.
   std::vector<Box> box;
   std::vector<std::filesystem::path> user_models;   ///< files of user-defined models
   sim::library::EffectLibrary library;              ///< owner of the user-defined models
@@ -109,11 +110,11 @@ struct DatasetConfig {
   [[nodiscard]] const sim::Parameter& record_of(const Box& box) const;
   /// Returns the parameter's name: "H" of the machine, "SEXS.K" of another effect.
   [[nodiscard]] std::string name_of(const Box& box) const;
-  /// Returns the effects other than the machine with parameters in the box, each once.
+  /// Returns the effects with parameters in the box, each once, without the machine.
   [[nodiscard]] std::vector<const sim::Effect*> other_effects() const;
-  /// Returns the size of a stable draw in a shard [bytes].
+  /// Returns the size of one stable draw's data in a shard [bytes].
   [[nodiscard]] std::uint64_t bytes_per_draw() const;
-  /// Returns the number of databank points for all draws.
+  /// Returns the number of databank samples for all draws.
   [[nodiscard]] std::uint64_t points() const;
   /// Returns every value that affects the dataset's bytes, one `key = value` per line.
   [[nodiscard]] std::string canonical() const;
@@ -132,8 +133,8 @@ struct Study {
   std::vector<int> plants;       ///< index of each varied generator
   std::vector<int> fault_buses;  ///< index of each bus that may be faulted
 };
-/// Loads the grid of a config. Throws InputError for unknown buses, a generator of another model or without a
-/// varied effect, an effect attached to an occupied slot, and invalid parameters.
+/// Loads the grid of a config. Throws InputError for an unknown bus, a generator with another machine model
+/// or without a varied effect, an effect attached to an occupied slot, or invalid parameters.
 Study load_study(const DatasetConfig& config);
 
 /// Returns the XXH3-64 hash of the canonical config, the contents of .raw, .dyr and user-defined models, and

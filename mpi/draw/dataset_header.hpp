@@ -1,5 +1,5 @@
 #pragma once
-// Header of a dataset (dataset.json) from its study: the properties common to all shards.
+// Header of a dataset (dataset.json): the properties common to all shards, computed from the study.
 #include "mpi/draw/dataset_config.hpp"
 #include "mpi/store/dataset.hpp"
 

@@ -68,7 +68,7 @@ std::string DatasetConfig::canonical() const {
   const auto line = [&](std::string_view key, const auto& value) {
     text += fmt::format("{} = {}\n", key, value);
   };
-  // Optional keys at their defaults give no line, so that older configs keep their hash.
+  // Optional keys with their default value give no line, so that older configs keep their hash.
   const sim::grid::CaseOptions& o = grid_case;
   const auto choice = [&](std::string_view key, const std::vector<std::string>& words, auto chosen) {
     if (const auto at = static_cast<std::size_t>(chosen); at > 0) line(key, words[at]);

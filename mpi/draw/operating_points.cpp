@@ -18,14 +18,14 @@ namespace network = sim::network;
 /// Largest number of unusable draws in a row; more indicate an infeasible config. It is also the number of
 /// keys per block, which determines the content of datasets: never change it.
 constexpr std::uint64_t kMostDraws = 100;
-/// Range of plausible bus voltages [pu]. No grid operates outside of it for long, although the power flow
-/// equations may have solutions there.
+/// Range of plausible bus voltages [pu]. The power flow may have solutions outside of it, but no grid
+/// operates there for long.
 constexpr double kLowestPlausible = 0.85, kHighestVoltage = 1.15;
 constexpr int kLineTries = 1000;  ///< largest number of lines tried for removal
 
 void draw_loads(const OperatingPointConfig& c, double common, Random& random, network::Network& n) {
   for (auto& load : n.loads) {
-    if (load.kind == network::LoadKind::shunt) continue;  // not a consumer
+    if (load.kind == network::LoadKind::shunt) continue;  // a shunt consumes no power
     const double s = common * random.uniform(1.0 - c.load_spread, 1.0 + c.load_spread);
     load.power *= s;
     load.current *= s;
@@ -64,7 +64,7 @@ bool draw_lines(const OperatingPointConfig& c, Random& random, network::Network&
   return left == 0;
 }
 
-/// Draws machine bases from the machines' apparent power in the power flow.
+/// Draws machine bases: apparent power in the power flow divided by a random loading.
 void draw_bases(const OperatingPointConfig& c, Random& random, sim::grid::Grid& grid) {
   for (std::size_t i = 0; i < grid.plants.size(); ++i) {
     const double loading = random.uniform(c.loading_low, c.loading_high);
@@ -84,7 +84,7 @@ bool plausible(const sim::grid::Grid& grid, const sim::grid::Grid& own) {
   }
   for (std::size_t i = 0; i < grid.plants.size(); ++i) {
     const auto& plant = grid.plants[i];
-    // No generator may become a motor, in particular the slack, which balances the others.
+    // No generator may become a motor. In particular the slack might, because it balances the others.
     if (own.plants[i].generation.real() > 0.0 && plant.generation.real() <= 0.0) return false;
     if (!(plant.mva > 0.0)) return false;
     try {

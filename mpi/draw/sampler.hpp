@@ -1,6 +1,6 @@
 #pragma once
-// Random draw of a simulation from its sample number: the generator that varies, its parameters and the
-// fault. A pure function of (config, databank, sample_id).
+// Random draw of a simulation: the varied generator, its parameters and the fault. The draw is a pure
+// function of (config, databank, sample_id).
 #include <vector>
 
 #include "mpi/draw/databank.hpp"
@@ -9,11 +9,11 @@
 
 namespace swingbank::mpi::draw {
 
-/// One draw: a simulation job, its recorded generators and their databank points.
+/// One draw: a simulation job, its recorded generators and their databank samples.
 struct Draw {
   sim::batch::Job job;
   std::vector<std::size_t> recorded;  ///< recorded generators, as indices into Study::plants
-  std::vector<std::size_t> points;    ///< databank point of each recorded generator
+  std::vector<std::size_t> points;    ///< databank sample of each recorded generator
   Redrawn redrawn;                    ///< rejected operating points of its block
 };
 
@@ -21,9 +21,10 @@ struct Draw {
 class Sampler {
  public:
   Sampler(const Study& study, const Databank& bank) : study_(study), bank_(bank), operating_(study) {}
-  /// Returns the draw of a sample. With p = sample_id / faults per point and G generators, databank point p
-  /// varies generator p mod G, or, if all generators vary, points p G ... p G + G - 1 vary generators 0 ... G
-  /// - 1. Draws in ascending order reuse the operating point of their block.
+  /// Returns the draw of a `sample_id`. Let p = sample_id / (faults per databank sample), rounded down, and G
+  /// the number of generators. With Vary::one, generator p mod G gets databank sample p. With Vary::all,
+  /// generators 0 ... G - 1 get databank samples p G ... p G + G - 1. Calls in ascending order reuse the
+  /// operating point of a block.
   [[nodiscard]] Draw draw(std::uint64_t sample_id);
   /// Returns why the machines cannot be initialised at their operating point with these parameters; empty if
   /// they can.

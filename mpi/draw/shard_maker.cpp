@@ -9,12 +9,12 @@
 namespace swingbank::mpi::draw {
 
 namespace {
-/// Voltage below which the angle is undefined [pu]. A bolted fault at the terminal gives 1e-12, because the
-/// kernel keeps square roots differentiable.
+/// Voltage below which the angle is undefined [pu]. A bolted fault at the terminal gives 1e-12 instead of 0,
+/// because the kernel keeps square roots differentiable.
 constexpr double kNoVoltage = 1e-6;
 }  // namespace
 
-/// Buffers with space for every possible row; compacted once the stable draws are known.
+/// Buffers with space for every draw's rows, compacted once the stable draws are known.
 struct ShardMaker::Slots {
   std::uint64_t first;
   std::size_t per_draw, channels, samples;
@@ -43,8 +43,8 @@ ShardMaker::ShardMaker(const Study& study, const Databank& bank)
   }
 }
 
-/// Returns the batch of a generator. A batch records the same plants in every run, so each generator that
-/// varies alone needs its own.
+/// Returns the batch of a generator. A batch records the same plants in every run; therefore, with Vary::one,
+/// each generator needs its own batch.
 sim::batch::Batch& ShardMaker::batch_for(std::size_t generator) {
   auto& batch = batches_[generator];
   if (!batch) {

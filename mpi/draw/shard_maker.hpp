@@ -1,5 +1,5 @@
 #pragma once
-// Simulation of a range of draws, with the records as rows of a shard.
+// Simulation of a range of draws and arrangement of the records as rows of a shard.
 #include <functional>
 #include <map>
 #include <memory>
@@ -30,12 +30,13 @@ class ShardMaker {
   const Study& study_;
   const Databank& bank_;
   Sampler sampler_;
-  /// Channels that the kernel records: those of the config, and V and theta if needed.
+  /// Channels that the kernel records: those of the config, plus V and theta if frequency or theta is one of
+  /// them.
   std::vector<sim::Channel> simulated_;
   std::vector<int> source_;        ///< index into simulated_ of each channel of the config; -1: frequency
   int voltage_ = -1, angle_ = -1;  ///< indices into simulated_
   bool angle_recorded_ = false;
-  /// Batches by generator; a single one with key 0 if all generators vary.
+  /// Batch of each generator; a single batch with key 0 if all generators vary.
   std::map<std::size_t, std::unique_ptr<sim::batch::Batch>> batches_;
 };
 

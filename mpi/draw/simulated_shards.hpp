@@ -1,6 +1,6 @@
 #pragma once
-// Shards simulated in memory, each released after use. Their content equals the files of `generate` to the
-// last bit.
+// Shards simulated in memory instead of read from files. Their content equals that of the files of `generate`
+// to the last bit.
 #include <deque>
 #include <memory>
 

@@ -57,7 +57,7 @@ class OwnThread {
   }
   std::atomic<State> state_ = State::idle;
   std::atomic<bool> end_ = false;
-  std::size_t item_ = 0;  // owner of this and the next two members: the thread while state_ is `working`
+  std::size_t item_ = 0;  // this and the next two members belong to the thread while state_ is `working`
   std::string result_;
   std::exception_ptr failure_;
   std::thread thread_;  // last member, because it uses the others
@@ -101,7 +101,7 @@ void ItemQueue::finish(std::size_t item, const std::string& result) {
   shared_.done(item, result);
 }
 
-/// Ends the run if an item is over its time limit, the only sign of a hanging rank.
+/// Ends the run if an item exceeds its time limit. A hanging rank gives no other sign.
 void ItemQueue::end_if_overdue() const {
   if (shared_.limit <= 0.0) return;
   for (const auto& [rank, given] : given_) {

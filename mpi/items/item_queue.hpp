@@ -1,7 +1,7 @@
 #pragma once
-// Dynamic load balancing of independent items on rank 0: each idle rank gets the next item, and rank 0 works
-// in a separate thread. For items with long and uneven run times (plants of a fleet, blind cases); datasets
-// have their own master (mpi/ranks).
+// Dynamic load balancing of independent items by rank 0. Each idle rank gets the next item, and a separate
+// thread of rank 0 processes items too. For items with long and uneven run times, such as the plants of a
+// fleet or the cases of the blind test. Datasets have their own master (mpi/ranks).
 #include <chrono>
 #include <deque>
 #include <functional>
@@ -16,7 +16,7 @@ namespace swingbank::mpi::items {
 
 class OwnThread;
 
-/// Items not yet given to a rank, and those in progress.
+/// Queue of the items that no rank has received yet, with the items in progress.
 class ItemQueue {
  public:
   /// `shared` must outlive the queue. `end_run` ends the program on all ranks and does not return; it is
@@ -32,7 +32,7 @@ class ItemQueue {
   bool run(const std::function<bool()>& serve);
   /// Returns the next item for an idle rank; none if all are given or the run stops.
   std::optional<std::size_t> next(int rank);
-  /// Passes on the result of an item.
+  /// Passes the result of an item to SharedItems::done.
   void finish(std::size_t item, const std::string& result);
   /// Gives no further items.
   void stop() { stop_ = true; }

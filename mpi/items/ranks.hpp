@@ -1,7 +1,6 @@
 #pragma once
-// Ranks that share independent items of work or one training, as an interface: this process alone
-// (one_process.hpp) or the ranks of a launcher (mpi/ranks/item_ranks.hpp), so that the same command runs with
-// and without MPI.
+// Interface of the ranks that share independent items of work or one training. The same command thus runs
+// without MPI, as the only rank (one_process.hpp), or on the ranks of a launcher (mpi/ranks/item_ranks.hpp).
 #include <cstddef>
 #include <functional>
 #include <span>
@@ -13,14 +12,14 @@ namespace swingbank::mpi::items {
 /// Items and their work.
 struct SharedItems {
   std::vector<std::size_t> items;  ///< the same on all ranks
-  /// Processes an item on any rank; must not call MPI, because on rank 0 it runs in a separate thread. Its
-  /// result is sent to rank 0.
+  /// Processes an item on any rank. Must not call MPI, because on rank 0 it runs in a separate thread. Its
+  /// return value is sent to rank 0.
   std::function<std::string(std::size_t item)> work;
   /// Receives each result, on rank 0 in the calling thread, in order of completion.
   std::function<void(std::size_t item, const std::string& result)> done;
-  /// Longest time for an item [s], after which the run ends with an error; 0: unlimited.
+  /// Time limit of an item [s]; if it is exceeded, the run ends with an error. 0: unlimited.
   double limit = 0.0;
-  /// Returns an item's name for this error.
+  /// Returns an item's name for the message of this error.
   std::function<std::string(std::size_t item)> name = [](std::size_t item) { return std::to_string(item); };
 };
 
@@ -43,9 +42,9 @@ class Ranks {
   virtual void agree(const std::string& where, const std::function<void()>& prepare) const = 0;
   /// Processes the items until all are done or a rank receives a stop signal (base/stop_signal.hpp); items in
   /// progress are then finished and no others are started. Collective; rank 0 distributes the items and also
-  /// works. Returns true on all ranks if every item is done. An item over its time limit ends the program on
-  /// all ranks, because its rank may hang. An exception of `work` or `done` also ends the run on all ranks,
-  /// so neither may throw because of an item's content.
+  /// works. Returns true on all ranks if every item is done. An item that exceeds its time limit ends the
+  /// program on all ranks, because its rank may hang. An exception of `work` or `done` also ends the run on
+  /// all ranks, so neither may throw because of an item's content.
   [[nodiscard]] virtual bool share_items(const SharedItems& shared) const = 0;
 };
 

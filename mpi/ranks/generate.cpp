@@ -31,7 +31,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Number of ranks from which on rank 0 only schedules, because it cannot reply while it writes a shard.
+/// Smallest number of ranks for which rank 0 only schedules. A simulating rank 0 cannot reply while it writes
+/// a shard.
 constexpr int kLedFrom = 32;
 
 /// Throws InputError if a rank has another config or another kernel variant than rank 0.
@@ -70,7 +71,7 @@ std::optional<draw::Databank> shared_databank(const draw::Study& study, const fs
   draw::Databank bank;
   bank.dimensions = study.config.box.size();
   const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
-  agree(world, "databank", [&] {  // allocated before the drawing, which may take long
+  agree(world, "databank", [&] {  // allocate before the draw, which may take long
     if (rank != 0) allocate_values(bank.values, study.config.points() * bank.dimensions, rank);
   });
   agree(world, "databank", [&] {
@@ -95,7 +96,7 @@ std::uint64_t draws_in(const std::deque<std::uint64_t>& shards, const draw::Data
   return n;
 }
 
-/// Sends a report to rank 0 and returns the next lease, for leaders of other groups.
+/// Sends a report to rank 0 and returns the next lease. For leaders other than rank 0.
 Shards ask_master(MPI_Comm world, const Report& report, double timeout) {
   const std::string text = pack(report);
   MPI_Send(text.data(), static_cast<int>(text.size()), MPI_CHAR, 0, kReportTag, world);
@@ -119,17 +120,17 @@ struct Groups {
     count = (workers + writers - 1) / writers;
     MPI_Comm_split(world, rank < first ? MPI_UNDEFINED : (rank - first) / writers, rank, &mine);
   }
-  ~Groups() {  // MPI_Comm_free is collective: not while this rank alone unwinds after an exception
+  ~Groups() {  // MPI_Comm_free is collective: no call while only this rank unwinds its stack
     if (mine != MPI_COMM_NULL && std::uncaught_exceptions() == 0) MPI_Comm_free(&mine);
   }
   Groups(const Groups&) = delete;
   Groups& operator=(const Groups&) = delete;
 };
 
-/// Runs rank 0: the master, and its worker between two polls unless the master is dedicated.
+/// Runs rank 0: the master and, unless it is dedicated, the worker, which polls the master between its draws.
 void lead(Worker* worker, Master& master, Progress& progress) {
   if (worker != nullptr) {
-    std::uint64_t counted = 0;  // this rank's draws of the current shard, already displayed
+    std::uint64_t counted = 0;  // draws of the current shard that this rank has already displayed
     worker->exchange = [&](const Report& r) {
       for (const auto& line : r.finished) progress.add(line.draws - std::min(counted, line.draws));
       counted = 0;

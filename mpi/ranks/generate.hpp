@@ -1,5 +1,5 @@
 #pragma once
-// Generation of a dataset on all ranks (`swingbank generate`): databank, master, workers, dataset folder.
+// Generation of a dataset on all ranks (`swingbank generate`).
 #include <mpi.h>
 
 #include "base/progress.hpp"
@@ -14,7 +14,7 @@ struct GenerateOptions {
   store::Part part;                ///< subset of the shards that this run generates
   std::filesystem::path databank;  ///< file of `swingbank databank`; empty: draw the databank
   int writer_ranks = 1;            ///< number of ranks that write a shard together
-  double lease_timeout = 600.0;    ///< longest time for a lease [s]; 0: unlimited
+  double lease_timeout = 600.0;    ///< time limit of a lease [s]; 0: unlimited
   bool dedicated_master = false;   ///< rank 0 does not simulate
   bool repair = false;             ///< regenerate damaged shards
   std::string software = {};       ///< version and commit, for the card
@@ -23,7 +23,7 @@ struct GenerateOptions {
 };
 
 /// Generates the missing shards of a dataset, or of one part of it. Collective over `world`. Returns 0, or 2
-/// after a graceful stop with shards missing. Throws the same InputError on all ranks.
+/// after a graceful stop if shards are missing. Throws the same InputError on all ranks.
 int generate(const draw::DatasetConfig& config, const GenerateOptions& options, MPI_Comm world);
 
 }  // namespace swingbank::mpi::ranks

@@ -17,7 +17,7 @@ namespace {
 constexpr int kFinishedTag = 11, kItemTag = 12;
 constexpr std::int64_t kNone = -1;
 
-/// Returns a rank's message to rank 0, "item stop result"; item -1: none finished yet.
+/// Returns a rank's message to rank 0, "item stop result". Item -1: the rank has finished none yet.
 std::string packed(std::int64_t item, const std::string& result) {
   return fmt::format("{} {} {}", item, stop_asked() ? 1 : 0, result);
 }
@@ -62,7 +62,7 @@ bool distribute(MPI_Comm world, int size, const items::SharedItems& shared) {
   });
 }
 
-/// Loop of the other ranks: sends each result and receives the next item, until none is left.
+/// Work loop of the other ranks: sends each result and receives the next item, until none is left.
 void take_until_none(MPI_Comm world, const items::SharedItems& shared) {
   std::string text = packed(kNone, "");
   for (;;) {
@@ -101,7 +101,7 @@ int ItemRanks::from_first(int value) const {
 }
 
 namespace {
-/// Calls `work` for consecutive parts of at most 2^28 elements: MPI counts by `int`.
+/// Calls `work` for consecutive parts of at most 2^28 elements, because MPI's counts are of type `int`.
 template <class Element, class Work>
 void in_parts(std::span<Element> all, const Work& work) {
   constexpr std::size_t kMostAtOnce = std::size_t{1} << 28;

@@ -1,5 +1,5 @@
 #pragma once
-// Ranks of a launcher that share items or a training through MPI.
+// Implementation of the interface items::Ranks with MPI, for the ranks of a launcher.
 #include <mpi.h>
 
 #include "mpi/items/ranks.hpp"

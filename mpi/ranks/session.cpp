@@ -15,8 +15,8 @@ namespace swingbank::mpi::ranks {
 
 namespace {
 
-/// Ends the process if the launcher started several ranks but MPI has only one. A launcher of another MPI,
-/// such as a host's with a container, starts ranks that each see only themselves and would all do the same
+/// Ends the process if the launcher started several ranks but MPI has only one. If the launcher belongs to
+/// another MPI, for example outside a container, each rank sees only itself. All ranks would then do the same
 /// work.
 void require_one_world(int size) {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
@@ -39,8 +39,9 @@ void require_one_world(int size) {
 MpiSession::MpiSession(int* argc, char*** argv) {
   ::setenv("OMPI_MCA_fbtl_posix_read_datasieving", "0", 1);
   if (!launched()) {
-    // A process without a launcher needs no OpenMPI daemon. Such processes share one temporary folder, and
-    // the first to end removes the others' files (OpenMPI 4.1.4), so each gets its own.
+    // A process without a launcher needs no OpenMPI daemon. Such processes would share one temporary folder,
+    // and the first that ends would remove the others' files (OpenMPI 4.1.4). Therefore each process gets its
+    // own folder.
     ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
     ::setenv("OMPI_MCA_pml", "ob1", 0);  // avoids 0.2 s of search for fast networks
     std::string folder = (std::filesystem::temp_directory_path() / "swingbank-mpi-XXXXXX").string();

@@ -25,9 +25,9 @@ class MpiSession {
   std::filesystem::path temporary_;  ///< temporary folder of a process started without a launcher
 };
 
-/// Runs a program's work and returns its exit code, or 1 after an exception. An AgreedError is the same on
-/// all ranks, and rank 0 prints it. Any other exception concerns this rank only: it is printed with the
-/// rank's number, and all ranks end, because the others would wait for this one forever.
+/// Runs a program's work and returns its exit code, or 1 after an exception. All ranks throw the same
+/// AgreedError, and rank 0 prints it. Any other exception concerns one rank only: that rank prints it with
+/// its number and ends all ranks, because the others would wait for it forever.
 int run_on_all_ranks(const MpiSession& session, const std::function<int()>& work);
 
 }  // namespace swingbank::mpi::ranks

@@ -18,10 +18,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Time after which a failed rank prints its reason while the others have not responded [s]. Short, because
-/// another time limit, such as that of a lease, may end the run first.
+/// Time after which a failed rank prints its reason if the others have not responded [s]. It is short, so
+/// that no other time limit, such as that of a lease, ends the run first.
 constexpr double kReportAfter = 1.0;
-/// Further time after which it ends all ranks [s].
+/// Further time after which the failed rank ends all ranks [s].
 constexpr double kOthersMayTake = 19.0;
 
 void share_text(MPI_Comm group, int from, std::string& text) {
@@ -53,8 +53,8 @@ std::vector<T> gather(MPI_Comm group, const std::vector<T>& mine, int size) {
   return all;
 }
 
-/// Returns the file-access property list for MPI-IO; the default one for a single rank. The file's bytes are
-/// the same.
+/// Returns the file-access property list for MPI-IO, or the default list for a single rank. Both write the
+/// same bytes.
 store::h5::Handle access_list(MPI_Comm group, int size) {
   if (size == 1) return {};
   store::h5::Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -62,8 +62,8 @@ store::h5::Handle access_list(MPI_Comm group, int size) {
   return list;
 }
 
-/// Removes the file with which OpenMPI's MPI-IO tests file locks (sharedfp/lockedfile), if OpenMPI could not
-/// remove it.
+/// Removes the file with which OpenMPI tests file locks (component sharedfp/lockedfile). OpenMPI sometimes
+/// fails to remove it.
 void remove_lock_test(const fs::path& opened, int rank) {
   std::error_code ignored;
   fs::remove(opened.string() + ".locktest." + std::to_string(rank), ignored);
@@ -85,10 +85,10 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
                         "run the command again; if it fails again, report it with this message"});
   }
   int mine = problems.empty() ? size : rank, first = size;
-  MPI_Request request;  // not blocking: one rank may work for minutes while the others wait
+  MPI_Request request;  // non-blocking: the others may wait for minutes, without busy polling
   MPI_Iallreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group, &request);
-  // The failure may have occurred within a collective operation (writing by HDF5), in which the others wait
-  // for this rank.
+  // The failure may have occurred within a collective operation of HDF5. The others then wait there for this
+  // rank.
   if (!wait_for(request, problems.empty() ? 0.0 : kReportAfter)) {
     const std::string why = problems.front().sentence();
     std::fprintf(stderr, "failure at rank %d of a group of %d (%s): the others are waited for\n", rank, size,
@@ -144,7 +144,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
   std::uint64_t rows = part.rows;
   MPI_Allreduce(MPI_IN_PLACE, &rows, 1, MPI_UINT64_T, MPI_SUM, group);
 
-  int in_world;  // rank number in messages
+  int in_world;  // number of this rank in messages
   MPI_Comm_rank(MPI_COMM_WORLD, &in_world);
   const fs::path temporary = temporary_name(file);
   std::uint64_t bytes = 0;
@@ -159,7 +159,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
   };
   store::h5::File f;
   try {
-    // Reserves the space first, because MPI-IO does not report the system's reason of a failure.
+    // Reserve the space first, because MPI-IO does not report the system's reason for a failure.
     agree(group, file.string(), [&] {
       if (rank == 0) reserve(file, size_on_disk(part, rows, ids.size()));
     });
@@ -169,9 +169,9 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
     together("fill", [&] { store::fill_shard(f, part, before[0], before[1]); });
     together("close", [&] { f.close(); });
     if (size > 1) remove_lock_test(temporary, rank);
-    if (size > 1) agree(group, file.string(), [&] { flush_temporary(file); });  // each node flushes its data
+    if (size > 1) agree(group, file.string(), [&] { flush_temporary(file); });  // on each node
     agree(group, file.string(), [&] {
-      // Computes the hashes while the disk flushes.
+      // Compute the hashes while the disk flushes.
       auto hashing = std::async(std::launch::async, [&part] { return store::row_hashes(part); });
       if (rank == 0) {
         file_hash = publish_hashed(file);

@@ -13,14 +13,14 @@ namespace swingbank::mpi::store {
 struct Attempt {
   std::string started, ended;                     ///< UTC, "2026-11-24T22:14:09Z"; `ended` is empty if killed
   std::string outcome;                            ///< "made", "stopped" or "failed"; empty if killed
-  std::map<std::string, std::string> properties;  ///< host, process, ranks, software, shards found: by name
+  std::map<std::string, std::string> properties;  ///< by name: host, process, ranks, software, shards found
 };
 
 /// Writer of one run's lines.
 class AttemptLog {
  public:
-  /// Appends the line of a start. `properties`: host, ranks and software of the run, and the shards that it
-  /// found.
+  /// Appends the line for the start of the run. `properties`: host, ranks and software of the run, and the
+  /// shards that it found.
   AttemptLog(const std::filesystem::path& folder, const std::map<std::string, std::string>& properties);
   /// Appends the outcome "failed" unless end() was called.
   ~AttemptLog();
@@ -28,7 +28,7 @@ class AttemptLog {
   AttemptLog& operator=(const AttemptLog&) = delete;
   /// Appends another property of the run.
   void add_property(const std::string& name, const std::string& value);
-  /// Appends the end of the run. `outcome`: "made", "stopped" or "failed".
+  /// Appends the line for the end of the run. `outcome`: "made", "stopped" or "failed".
   void end(const std::string& outcome);
 
  private:

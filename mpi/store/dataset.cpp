@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kDatasetFormat = "swingbank-dataset-2";
-constexpr const char* kInt16Dataset = "swingbank-dataset-3";  ///< a format that older readers reject
+constexpr const char* kInt16Dataset = "swingbank-dataset-3";  ///< older readers reject this format
 constexpr const char* kRestoreHeader =
     "restore the file from a copy, or make the dataset again in an empty folder";
 constexpr const char* kRemake =
@@ -60,7 +60,7 @@ nlohmann::ordered_json to_json(const DatasetHeader& h) {
   return j;
 }
 
-/// Throws std::runtime_error unless every generator has its fixed parameters and base.
+/// Throws std::runtime_error unless the fixed parameters and bases are given for every generator.
 void require_agreement(const DatasetHeader& h) {
   const std::size_t n = h.generators.size();
   const bool values =
@@ -144,7 +144,7 @@ void require_length(const ShardInfo& s) {
   if (const auto p = fault_of_length(s.path, s.bytes)) throw InputError(*p);
 }
 
-/// Cached listing of the folders of shards, which avoids a system call for each file.
+/// Cached listing of the shard folders. It avoids a system call for each file.
 class Listing {
  public:
   explicit Listing(fs::path folder) : folder_(std::move(folder)) {}
@@ -283,7 +283,7 @@ ShardData read_checked(const ShardInfo& s) {
     throw InputError({what, s.path.string(), why, kRepairDataset});
   };
   require_length(s);
-  // Before HDF5 opens the file, because HDF5 1.10 may crash on a damaged one.
+  // Check the hash before HDF5 opens the file, because HDF5 1.10 may crash on a damaged one.
   if (const std::string bytes = hash_of_file(s.path); bytes != s.file_hash)
     fail("changed shard", "the hash of its bytes is " + bytes + ", the journal records " + s.file_hash);
   ShardData data = read_shard(s.path, {}, &s.shape);

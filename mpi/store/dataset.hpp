@@ -21,7 +21,7 @@ struct DatasetHeader {
   ///< 16 hex digits; Batch::variant(); "swingbank 0.2.0"; "GENROU"
   std::string config;  ///< the config in canonical form
   std::uint64_t seed = 0, draws = 0, draws_per_shard = 0;
-  ///< seed of the random draws; number of draws in all and of a full shard
+  ///< seed of the random draws; number of draws in total; number of draws of a full shard
   double rate = 0.0;          ///< sampling rate [1/s]
   std::uint64_t samples = 0;  ///< samples per channel and row
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
@@ -29,8 +29,9 @@ struct DatasetHeader {
   std::vector<double> parameter_low, parameter_high;  ///< the sampling box
   std::vector<std::string> parameter_effects = {};    ///< effect of each parameter; empty: machine for all
   double frequency = 0.0;                             ///< nominal frequency [Hz]; 0 in older datasets
-  std::vector<std::int32_t> generators = {};   ///< bus numbers of the varied generators; empty if older
-  std::vector<double> machine_base = {};       ///< their bases [MVA]; empty if each row has its own
+  /// Bus numbers of the varied generators; empty in older datasets.
+  std::vector<std::int32_t> generators = {};
+  std::vector<double> machine_base = {};       ///< machine bases [MVA]; empty if each row has its own
   std::vector<std::string> held_names = {};    ///< fixed machine parameters outside of parameter_names
   std::vector<std::vector<double>> held = {};  ///< values of the fixed parameters of each generator
   bool int16 = false;                          ///< storage as 16-bit integers (quantise.hpp)
@@ -70,8 +71,8 @@ std::string dataset_hash(const std::vector<ShardInfo>& shards);
 /// description.
 ShardInfo info_of(const DatasetHeader& header, const ShardData& data, std::uint64_t first_row);
 
-/// Opens a dataset. Takes the list of shards from the manifest if there is one, which avoids any access to
-/// the shards; otherwise from the journals, and checks that the files exist. The functions that read a shard
+/// Opens a dataset. Takes the list of shards from the manifest if there is one, without access to the shards.
+/// Otherwise takes it from the journals and checks that the files exist. The functions that read a shard
 /// check its length and bytes. Throws InputError if there is no dataset or, unless `allow_incomplete`, if
 /// shards are missing.
 Dataset open_dataset(const std::filesystem::path& folder, bool allow_incomplete = false);
@@ -98,7 +99,8 @@ std::vector<double> config_numbers(const DatasetHeader& header, const std::strin
 /// Returns the text after "key = " in a dataset's config; empty if there is no such line.
 std::string config_text(const DatasetHeader& header, const std::string& key);
 
-/// Throws InputError if the header lacks the frequency and the fixed parameters, as in older datasets.
+/// Throws InputError if the header lacks the frequency and the fixed parameters, as it does in older
+/// datasets.
 void require_machines(const DatasetHeader& header, const std::filesystem::path& folder);
 
 /// Returns the text of dataset.json. Throws InputError if a text of the header is not UTF-8, which JSON

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kRemedy = "if the file is damaged, delete it and run the command that made it again";
 
-/// Returns the innermost message on HDF5's error stack, the cause, and clears the stack.
+/// Returns the innermost message on HDF5's error stack, which is the cause. Clears the stack.
 std::string reason() {
   std::string text = "no reason given by HDF5";
   H5Ewalk2(
@@ -32,8 +32,8 @@ std::string reason() {
   return text;
 }
 
-/// Returns the errno value in a message of HDF5's driver ("errno = 28"), or the one equivalent to an MPI-IO
-/// error; 0 if there is none.
+/// Returns the errno value in a message of HDF5's driver ("errno = 28"), or the errno value that is
+/// equivalent to an MPI-IO error; 0 if there is none.
 int system_error(const std::string& why) {
   constexpr std::string_view kErrno = "errno = ";
   if (const auto at = why.find(kErrno); at != std::string::npos)
@@ -75,14 +75,14 @@ std::recursive_mutex& lock() {
 }
 
 namespace {
-/// Adds the text of errno to a vague message of HDF5, because MPI-IO does not always report the cause.
+/// Adds the text of errno to an unspecific message of HDF5, because MPI-IO does not always report the cause.
 std::string with_system(std::string why, int last) {
   const bool vague =
       why == "file write failed" || why == "file read failed" || why.find("ERR_OTHER") != why.npos;
   if (last != 0 && vague) why += std::string("; the system: ") + std::strerror(last);
   return why;
 }
-std::string first_failed_close;  // empty: none, or already reported; guarded by lock()
+std::string first_failed_close;  // empty: none or already reported; guarded by lock()
 }  // namespace
 
 void note_failed_close() {
@@ -140,7 +140,7 @@ File File::create(const std::filesystem::path& file, hid_t access) {
 void File::close() {
   errno = 0;
   if (file_.reset() && !close_failed) return;
-  // The cause is reported once; later files fail without it.
+  // The cause of a failed close is reported once; later files fail without it.
   const std::string why = unreported_failed_close();
   fail_for(why.empty() ? "something else could not be closed before" : why, "cannot complete the HDF5 file",
            "");
@@ -218,7 +218,7 @@ void File::too_large(const std::string& object, std::uint64_t values, std::size_
 }
 
 std::size_t File::values_in(const std::string& object, hsize_t count, std::size_t bytes) const {
-  constexpr std::uint64_t kDensest = 1032;  // highest compression ratio of zlib; other filters are far below
+  constexpr std::uint64_t kDensest = 1032;  // highest compression ratio of zlib, far above other filters
   const Shape extent = shape(object);
   std::uint64_t values = count, most = kDensest * std::filesystem::file_size(name_) / bytes;
   for (std::size_t i = 1; i < extent.size(); ++i)
@@ -242,7 +242,7 @@ void File::create_group(const std::string& name) {
 
 void File::create(const std::string& object, hid_t file_type, const Shape& shape) {
   const Handle space = space_of(shape), properties = untimed(H5P_DATASET_CREATE);
-  H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER);  // every row is written anyway
+  H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER);  // every row is written later
   H5Pset_alloc_time(properties.get(), H5D_ALLOC_TIME_EARLY);
   const Handle set(H5Dcreate2(file_.get(), object.c_str(), file_type, space.get(), H5P_DEFAULT,
                               properties.get(), H5P_DEFAULT),

@@ -23,8 +23,8 @@ std::recursive_mutex& lock();
 inline std::atomic<bool> close_failed = false;
 /// Stores the reason of the first failed close, because HDF5 discards it at its next call.
 void note_failed_close();
-/// Returns this reason once; empty if it was already returned. A destructor that closes an array cannot
-/// throw.
+/// Returns this reason at the first call, then an empty text. Needed because a destructor that closes an
+/// object cannot throw.
 std::string unreported_failed_close();
 
 /// Owner of an HDF5 identifier.
@@ -37,7 +37,7 @@ class Handle {
   Handle(hid_t id, Close close) : id_(id), close_(close) {}
   /// Takes over the object of `other`, which then owns nothing.
   Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  /// Exchanges the objects; that of this handle is closed with `other`.
+  /// Exchanges the objects; the previous object of this handle is closed with `other`.
   Handle& operator=(Handle&& other) noexcept {
     std::swap(id_, other.id_);
     std::swap(close_, other.close_);
@@ -64,8 +64,7 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// HDF5 types of T: native type in memory(), little-endian type in file(), and as kKind the type's short
-/// name.
+/// HDF5 types of T: memory() is the native type, file() the little-endian type, and kKind the short name.
 template <class T>
 struct Type;
 /// \cond
@@ -122,8 +121,8 @@ class File {
   static File open_apart(const std::filesystem::path& file, const std::vector<std::string>& names);
   /// Creates a file. `access`: a file-access property list (MPI-IO), or -1 for the default driver.
   static File create(const std::filesystem::path& file, hid_t access = -1);
-  /// Closes the file. Throws if buffered data could not be written, now or at the closing of any earlier
-  /// object.
+  /// Closes the file. Throws if buffered data could not be written, also if this happened when an earlier
+  /// object was closed.
   void close();
   /// Leaves the file open after the failure of one rank: HDF5 closes a file collectively and waits forever if
   /// the ranks' states differ.
@@ -133,13 +132,14 @@ class File {
   [[nodiscard]] bool has(const std::string& object) const;
   /// Returns the length of each dimension of an array.
   [[nodiscard]] Shape shape(const std::string& object) const;
-  /// Returns Type<T>::kKind of an array's type in the file; empty if there is no such T. Not for open_apart.
+  /// Returns Type<T>::kKind of an array's type in the file; empty if there is no such T. For a file from
+  /// open_apart, returns the kind of the transferred array.
   [[nodiscard]] std::string kind(const std::string& object) const;
   /// Creates a group, "/draws".
   void create_group(const std::string& name);
-  /// Creates an array of this HDF5 type.
+  /// Creates an array with this HDF5 type.
   void create(const std::string& object, hid_t file_type, const Shape& shape);
-  /// Creates an array of the file type of T.
+  /// Creates an array with the file type of T.
   template <class T>
   void create(const std::string& object, const Shape& shape) {
     create(object, Type<T>::file(), shape);
@@ -150,8 +150,8 @@ class File {
     std::string file, object;  ///< file name relative to this file's folder
     hsize_t count;             ///< number of rows
   };
-  /// Creates a virtual array: the rows of other files, concatenated. Type and row shape are those of the same
-  /// object of `example`.
+  /// Creates a virtual array: the rows of other files, concatenated. Type and row shape are those of the
+  /// object with the same name in `example`.
   void create_virtual(const std::string& object, const File& example, const std::vector<Part>& parts);
 
   /// Reads rows first ... first+count-1 of the leading dimension; resizes `values`.
@@ -183,16 +183,16 @@ class File {
 
   /// Creates a one-dimensional array of texts, stored with a fixed length in UTF-8.
   void create_labels(const std::string& object, const std::vector<std::string>& labels);
-  /// Writes the texts with which create_labels was called.
+  /// Writes the texts `labels`, with which create_labels was called.
   void write_labels(const std::string& object, const std::vector<std::string>& labels);
-  /// Writes the attributes `units` and `long_name` of an array, which viewers and xarray show.
+  /// Writes the attributes `units` and `long_name` of an array, which viewers and xarray display.
   void describe(const std::string& object, const std::string& units, const std::string& long_name);
   /// Array and, for each of its axes, the one-dimensional array with the axis' values.
   struct Axes {
     std::string array;                ///< "/records"
     std::vector<std::string> scales;  ///< one for each dimension: "/sample_id", "/channel", "/time"
   };
-  /// Makes the scales HDF5 dimension scales of all arrays that have them. To be called once for a file.
+  /// Attaches the HDF5 dimension scales to their arrays. Call it once per file.
   void attach_scales(const std::vector<Axes>& all);
 
   /// Writes a text as attribute of `object`.
@@ -221,7 +221,7 @@ class File {
 
   /// Throws InputError "<what> at <file>:<object> (<HDF5's reason>): <remedy>".
   [[noreturn]] void fail(const std::string& what, const std::string& object) const;
-  /// Throws InputError as fail(), with `why` as the reason.
+  /// Throws InputError as fail() does, with `why` as the reason.
   [[noreturn]] void fail_for(const std::string& why, const std::string& what,
                              const std::string& object) const;
   /// Returns the number of values in one row: the product of all dimensions except the first.
@@ -233,8 +233,8 @@ class File {
   [[noreturn]] void too_large(const std::string& object, std::uint64_t values, std::size_t bytes) const;
   void transfer(const std::string& object, hsize_t first, hsize_t count, hid_t type, void* in,
                 const void* out) const;
-  /// Returns the number of values in rows of an array from open_apart. Throws InputError if the rows do not
-  /// exist or have another type.
+  /// Returns the number of values in these rows of an array from open_apart. Throws InputError if the rows do
+  /// not exist or have another type.
   [[nodiscard]] std::size_t values_apart(const std::string& object, hsize_t first, hsize_t count,
                                          const char* kind) const;
   void copy_apart(const std::string& object, hsize_t first, hsize_t count, void* to) const;

@@ -1,6 +1,6 @@
-// Labels, units and dimension scales of HDF5 arrays, by which viewers, h5py and xarray show axes. The
-// attributes are those of HDF5's Dimension Scale Specification. libhdf5_hl writes the same, but rewrites a
-// scale's list with each array that it attaches, which leaves unused space in the file.
+// Labels, units and dimension scales of HDF5 arrays, which viewers, h5py and xarray use to display axes. The
+// attributes are those of HDF5's Dimension Scale Specification. libhdf5_hl writes the same attributes, but it
+// rewrites a scale's list for each attached array, which leaves unused space in the file.
 #include <algorithm>
 #include <cstring>
 #include <map>
@@ -11,7 +11,7 @@ namespace swingbank::mpi::store::h5 {
 
 namespace {
 
-/// Entry of a scale's REFERENCE_LIST: an array, and which of its axes the scale belongs to.
+/// Entry of a scale's REFERENCE_LIST: an array, and the index of the array's axis to which the scale belongs.
 struct ScaleUse {
   hobj_ref_t array;
   std::int32_t axis;
@@ -31,7 +31,7 @@ std::size_t longest(const std::vector<std::string>& labels) {
   return length;
 }
 
-/// Returns the type of a text of fixed length with its final zero, as the specification requires for CLASS.
+/// Returns the type of a zero-terminated text of fixed length, which the specification requires for CLASS.
 Handle zero_terminated(const std::string& text) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), text.size() + 1);

@@ -1,5 +1,5 @@
 #pragma once
-// Index of a complete dataset: the manifest for Swingbank's readers, and dataset.h5 for other programs.
+// Index files of a complete dataset: the manifest for Swingbank's readers, and dataset.h5 for other programs.
 #include <filesystem>
 
 namespace swingbank::mpi::store {

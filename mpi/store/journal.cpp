@@ -58,7 +58,7 @@ struct Placed {
   JournalLine line;
   std::filesystem::path file;
   int number;             ///< line number from 1
-  bool doubtful = false;  ///< whether another entry of its shard contradicts it
+  bool doubtful = false;  ///< whether another entry of the same shard contradicts it
 };
 
 /// Returns whether a file has the name of a journal.

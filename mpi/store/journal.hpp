@@ -1,6 +1,6 @@
 #pragma once
-// Journal of a dataset (journal.jsonl): one line per finished shard, appended and flushed after the shard has
-// its final name. Runs that generate a part of a dataset have a journal each.
+// Journal of a dataset (journal.jsonl): one line per finished shard. A line is appended and flushed after the
+// shard has its final name. Each run that generates a part of a dataset has its own journal.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -20,8 +20,8 @@ struct JournalLine {
   std::string hash;                               ///< shard hash, 16 hex digits
   std::string file_hash;                          ///< hash of the file's bytes (durable.hpp)
   std::map<std::string, std::uint64_t> outcomes;  ///< draws by outcome
-  /// Operating points of the blocks that begin in the shard: "used", and the rejected ones, "no_power_flow"
-  /// and "implausible".
+  /// Number of operating points of the blocks that begin in the shard: "used", and the rejected ones,
+  /// "no_power_flow" and "implausible".
   std::map<std::string, std::uint64_t> operating_points = {};
   /// Compares all members.
   bool operator==(const JournalLine&) const = default;
@@ -48,12 +48,12 @@ struct Part {
 std::vector<std::filesystem::path> journals_of(const std::filesystem::path& folder);
 
 /// Returns the entries of all journals of a dataset folder. Ignores a last line without line feed, which a
-/// killed process leaves, and counts identical entries once. Other damaged lines, and contradictory entries
-/// of a shard, are errors: they are omitted and added to `damaged`, or throw InputError if `damaged` is null.
+/// killed process leaves, and returns identical entries once. Omits other damaged lines and contradictory
+/// entries of a shard, and adds these problems to `damaged`. Throws InputError instead if `damaged` is null.
 std::vector<JournalLine> read_journals(const std::filesystem::path& folder, Problems* damaged = nullptr);
 
-/// Rewrites the journals atomically without these shards and without damaged lines. Removes the manifest
-/// first.
+/// Removes the manifest, then rewrites the journals atomically without these shards and without damaged
+/// lines.
 void strike_lines(const std::filesystem::path& folder, const std::vector<std::uint64_t>& shards);
 
 /// Open journal. The constructor removes an incomplete last line. The caller must hold the dataset's lock

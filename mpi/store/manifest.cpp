@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::string_view kManifestFormat = "swingbank-manifest-1\n", kManifestSum = "sum ";
 
-/// Returns names and lengths of the journals, one a line. There are few journals for any number of shards.
+/// Returns the names and lengths of the journals, one journal per line. Even a dataset with many shards has
+/// few journals.
 std::string journals_now(const fs::path& folder) {
   std::string text;
   for (const auto& file : journals_of(folder))
@@ -33,7 +34,7 @@ std::string counts_text(const std::map<std::string, std::uint64_t>& counts) {
   return text.empty() ? "-" : text;
 }
 
-/// Splitter of a text into words.
+/// Splitter of the manifest's text into words.
 class ManifestWords {
  public:
   explicit ManifestWords(std::string_view text) : left_(text) {}

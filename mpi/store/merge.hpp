@@ -1,6 +1,5 @@
 #pragma once
-// Merging of datasets of one config that have some of the shards each, generated on machines without a common
-// disk.
+// Merging of partial datasets of one config, generated on machines without a shared file system.
 #include <filesystem>
 #include <functional>
 #include <vector>
@@ -11,8 +10,8 @@ namespace swingbank::mpi::store {
 
 /// Copies the shards that `into` lacks. Each copy is compared with its journal entry, flushed and then
 /// journalled, so that an interrupted merge can continue. Calls `done` for each shard. Throws InputError for
-/// a folder of another config; and, after all valid shards are copied, for contradictory entries and for
-/// every file that differs from its entry.
+/// a folder of another config. After all valid shards are copied, throws InputError for contradictory entries
+/// and for files that differ from their entries.
 void merge_datasets(const std::vector<std::filesystem::path>& from, const std::filesystem::path& into,
                     const std::function<void()>& done);
 

@@ -5,8 +5,8 @@
 
 namespace swingbank::mpi::store {
 
-/// Largest quantisation error (half a step) relative to the range of a channel in its row; rounding to
-/// float32 comes on top. The thesis's reduction has 0.01 %.
+/// Largest quantisation error (half a step), relative to the range of a channel in its row. Rounding to
+/// float32 adds to it.
 constexpr double kQuantisationError = 1.0 / (2.0 * 65534.0);  // 0.00076 %
 
 /// Computes `codes` and `code_scale`, and replaces `records` by the decoded values.

@@ -38,9 +38,9 @@ struct RowBlock {
   std::vector<std::int32_t> generator;    ///< rows: bus number of the generator
   std::vector<double> fault;              ///< rows x 5: bus number, t_on [s], t_off [s], r [pu], x [pu]
   std::vector<double> largest_spread;     ///< rows: largest difference between two rotor angles [rad]
-  std::vector<std::uint8_t> angle_valid;  ///< rows x samples, or empty; 0: V = 0, theta is not defined
-  std::vector<double> machine_base;       ///< rows: base [MVA]; empty without operating points
-  std::vector<std::int16_t> codes;        ///< rows x channels x samples; empty where records are float32
+  std::vector<std::uint8_t> angle_valid;  ///< rows x samples, or empty; 0 where V = 0 and theta is undefined
+  std::vector<double> machine_base;       ///< rows: machine base [MVA]; empty without operating points
+  std::vector<std::int16_t> codes;        ///< rows x channels x samples; empty for float32 records
   std::vector<float> code_scale;          ///< rows x channels x kScaleColumns: offset, step
 };
 
@@ -60,7 +60,7 @@ constexpr std::size_t kRedrawnColumns = 2;  ///< no power flow, implausible
 constexpr const char* kRepairDataset = "run generate with --repair on the dataset: it makes the shard anew";
 /// Outcome of a draw with inadmissible parameters, in /draws/outcome. The values 0 ... 3 are sim::Outcome.
 constexpr std::uint8_t kRefused = 4;
-/// Returns the name of an outcome in /draws/outcome, "stable".
+/// Returns the name of an outcome in /draws/outcome, for example "stable".
 std::string_view draw_outcome_name(std::uint8_t outcome);
 
 /// Expected shape of a shard, from its dataset.
@@ -90,8 +90,8 @@ void read_rows(const std::filesystem::path& file, std::uint64_t first, std::uint
 /// InputError.
 void write_shard(const std::filesystem::path& file, const ShardData& data);
 
-/// Returns XXH3-64 over sample_id, generator, parameters, fault, largest_spread, angle_valid and machine_base
-/// (if present) and record of each row.
+/// Returns for each row XXH3-64 over its sample_id, generator, parameters, fault, largest_spread, angle_valid
+/// and machine_base (if present), and record.
 std::vector<std::uint64_t> row_hashes(const RowBlock& block);
 /// Returns XXH3-64 over the row hashes in order, then sample_id, outcomes and rejected operating points of
 /// the draws.

@@ -25,7 +25,7 @@ struct Reader {
   std::string text;  ///< incomplete last line
 };
 
-/// Returns the line of a shard, empty if it is valid.
+/// Returns the output line of a shard: its problem, or an empty line if it is valid.
 std::string line_of(const JournalLine& shard, const std::optional<Problem>& p) {
   return p ? bad_shard_text({shard.shard, *p}) : "\n";
 }

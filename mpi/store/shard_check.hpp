@@ -8,7 +8,7 @@
 
 namespace swingbank::mpi::store {
 
-/// Returns a damaged shard as a line of text, for another process.
+/// Returns a damaged shard as a line of text, to be sent to another process.
 std::string bad_shard_text(const BadShard& bad);
 /// Parses such a line.
 BadShard parse_bad_shard(const std::string& text);

@@ -7,7 +7,7 @@ namespace {
 /// Units, meaning and dimension scales of an array.
 struct ArrayDescription {
   const char *name, *units, *long_name;
-  std::vector<std::string> scales;  // empty: the array is a scale itself
+  std::vector<std::string> scales;  // empty: the array is itself a scale
 };
 
 const std::vector<ArrayDescription>& descriptions() {

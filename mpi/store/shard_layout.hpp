@@ -8,7 +8,7 @@ namespace swingbank::mpi::store {
 constexpr const char* kShardFormat = "swingbank-shard-1";  ///< records as float32
 constexpr const char* kInt16Format = "swingbank-shard-2";  ///< records as 16-bit integers
 
-/// Numbers of rows and draws of the whole file, over all writers.
+/// Numbers of rows and draws in the whole file, summed over all writers.
 struct ShardSize {
   std::uint64_t rows, draws;  ///< numbers of rows and draws
 };
@@ -16,11 +16,11 @@ struct ShardSize {
 /// Labels of the axes of a dataset's arrays.
 struct ShardAxes {
   const std::vector<std::string>&channel_names, &parameter_names;  ///< of /records and /parameters
-  std::uint64_t samples;                                           ///< of a channel and row
+  std::uint64_t samples;                                           ///< samples per channel and row
   double rate;                                                     ///< sampling rate [1/s]
 };
-/// Creates the dimension scales; describes the arrays that the file has, with units, and connects them with
-/// the scales. Collective if the file was opened collectively.
+/// Creates the dimension scales, writes units and descriptions of the file's arrays, and attaches the scales
+/// to the arrays. Collective if the file was opened collectively.
 void lay_out_axes(h5::File& file, const ShardAxes& axes);
 /// Writes the values of the dimension scales. Not collective.
 void fill_axes(h5::File& file, const ShardAxes& axes);

@@ -5,7 +5,7 @@
 namespace swingbank::mpi::store {
 
 namespace {
-constexpr std::uint64_t kInFolder = 1000;  ///< entries per folder, for parallel file systems
+constexpr std::uint64_t kInFolder = 1000;  ///< limit of entries per folder, for parallel file systems
 }
 
 std::string shard_file_name(std::uint64_t shard, std::uint64_t shards) {

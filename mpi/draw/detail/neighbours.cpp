@@ -10,8 +10,8 @@
 namespace swingbank::mpi::draw {
 
 namespace {
-constexpr std::size_t kAxes = 4;     ///< largest number of axes with cells; a search visits up to 3^4 cells
-constexpr double kWorthwhile = 3.0;  ///< smallest width of an axis with cells, in distances
+constexpr std::size_t kAxes = 4;     ///< largest number of gridded axes; a search visits up to 3^4 cells
+constexpr double kWorthwhile = 3.0;  ///< minimum width of a gridded axis, as a multiple of the distance
 constexpr unsigned kBits = 16;       ///< bits of a cell number per axis
 constexpr int kPointsAtOnce = 8;     ///< points per block
 constexpr std::size_t kEarlyTestAxes = 4;  ///< axes after which a block is tested for early rejection
@@ -34,7 +34,8 @@ std::vector<double> Neighbours::ordered(const double* x) const {
   return y;
 }
 
-/// Returns the cell number on an axis, from 1, so that the cell below the first also has a number.
+/// Returns the cell number on an axis. Numbers start at 1, so that the cell below the first also has a
+/// number.
 std::uint64_t Neighbours::cell(const double* x, std::size_t axis) const {
   return 1 + static_cast<std::uint64_t>(std::min((x[axis] - low_[order_[axis]]) / distance_, 60000.0));
 }

@@ -1,7 +1,7 @@
 #pragma once
-// Fixed-radius neighbour search in a grid of cells. Points are sorted into cells as wide as the distance,
-// along the axes that are much longer than it. For 60,000 GENROU points and a distance of 0.7, a candidate
-// needs about a hundred comparisons, eight at a time (SIMD).
+// Fixed-radius neighbour search in a grid of cells. Points are sorted into cells whose width is the distance.
+// Only axes much longer than the distance are gridded. With 60,000 GENROU points and a distance of 0.7, a
+// search needs about a hundred comparisons, eight at a time (SIMD).
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -11,7 +11,7 @@ namespace swingbank::mpi::draw {
 /// Set of points with a search for neighbours.
 class Neighbours {
  public:
-  /// Lower end and width of the box on each axis, in the units of the distance.
+  /// `low`, `width`: lower end and width of the box on each axis, in the units of `distance`.
   Neighbours(std::vector<double> low, std::vector<double> width, double distance);
   /// Returns whether a point lies closer to `x` (one value per axis) than the distance.
   [[nodiscard]] bool near(const double* x) const;
@@ -25,12 +25,12 @@ class Neighbours {
     std::size_t points = 0;
     std::vector<double> blocks;
   };
-  /// Returns `x` in the order of `order_`, which all members below use.
+  /// Returns `x` in the order of `order_`. All members below expect this order.
   [[nodiscard]] std::vector<double> ordered(const double* x) const;
   [[nodiscard]] std::uint64_t cell(const double* x, std::size_t axis) const;
   [[nodiscard]] bool near_in(std::uint64_t key, const double* x) const;
   /// Searches the cells along `axis` and the following axes. `gap`: squared distance from `x` to the cell
-  /// along the axes before, in units of the distance.
+  /// along the preceding axes, in units of the squared search distance.
   [[nodiscard]] bool near_along(std::size_t axis, std::uint64_t key, const double* x, double gap) const;
 
   std::vector<double> low_;

@@ -1,5 +1,5 @@
 #pragma once
-// Assignment of a databank point to the blocks of a plant.
+// Assignment of a databank sample's parameters to the blocks of a plant.
 #include <string>
 #include <vector>
 
@@ -12,11 +12,11 @@ namespace swingbank::mpi::draw {
 int times_in(const sim::plant::Plant& plant, const sim::Effect& effect);
 
 /// Returns why the parameters of the machine or of the box's effects are inadmissible; empty if they are
-/// admissible. Always checks for singular equations ("singular: ..."); under the physical policy also for the
-/// order of reactances and the like ("not Xd > X'd").
+/// admissible. Always checks for singular equations ("singular: ..."). Under the physical policy, also checks
+/// relations between parameters, such as the order of the reactances ("not Xd > X'd").
 std::string objection(const DatasetConfig& config, const sim::plant::Plant& plant);
 
-/// Plant whose parameters in the box are set to databank points. It must contain every effect of the box
+/// Plant whose box parameters can be set to a databank sample. The plant must contain every effect of the box
 /// exactly once.
 class BoxedPlant {
  public:

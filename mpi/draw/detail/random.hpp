@@ -1,6 +1,6 @@
 #pragma once
-// Counter-based random numbers: the n-th number is a pure function of (seed, stream, id, n), so a sample's
-// draws depend neither on the process nor on the order of execution. Generator: Philox4x32-10 (J. Salmon et
+// Counter-based random numbers: the n-th number is a pure function of (seed, stream, id, n). Therefore the
+// numbers depend neither on the process nor on the order of execution. Generator: Philox4x32-10 (J. Salmon et
 // al., "Parallel random numbers: as easy as 1, 2, 3", SC'11).
 #include <Random123/philox.h>
 
@@ -8,7 +8,7 @@
 
 namespace swingbank::mpi::draw {
 
-/// Use of a sequence of random numbers. The values determine the content of datasets: never renumber.
+/// Purpose of a sequence of random numbers. Never renumber: the values determine the content of datasets.
 enum class Stream : std::uint32_t { databank = 1, fault = 2, operating_point = 3 };
 
 /// Sequence of random numbers.

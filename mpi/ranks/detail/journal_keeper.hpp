@@ -1,5 +1,5 @@
 #pragma once
-// Asynchronous writer of the journal: a thread writes all pending lines with one flush, so that the master
+// Asynchronous writer of the journal: a thread writes all queued lines with one flush, so that the master
 // never waits for the disk.
 #include <condition_variable>
 #include <functional>

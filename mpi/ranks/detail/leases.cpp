@@ -7,8 +7,8 @@ namespace swingbank::mpi::ranks {
 
 namespace {
 constexpr double kNewest = 0.2;  ///< weight of the newest lease in the smoothed time per shard
-/// Largest size of a lease, as a share of the missing shards per group, so that all groups end at about the
-/// same time.
+/// Largest size of a lease, relative to the missing shards divided by the number of groups. Leases thus
+/// shrink towards the end, and all groups end at about the same time.
 constexpr double kShareOfRest = 0.25;
 }  // namespace
 

@@ -1,6 +1,6 @@
 #pragma once
-// Assignment of missing shards to groups of ranks. A lease has as many shards as take about ten seconds,
-// which limits the rate of messages to the master.
+// Assignment of missing shards to groups of ranks. A lease contains as many shards as a group generates in
+// about ten seconds; this limits the rate of messages to the master.
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -26,7 +26,8 @@ class Leases {
 
   /// Returns the next shards for a group; empty if none are missing. `alone`: at most one shard.
   std::vector<std::uint64_t> give(int group, bool alone, Clock::time_point now);
-  /// Ends a group's lease after `seconds` [s] with the shards `made`; its other shards are missing again.
+  /// Ends a group's lease, which took `seconds` [s] and generated the shards `made`. Its other shards are
+  /// missing again.
   void take_back(int group, const std::vector<std::uint64_t>& made, double seconds);
 
   [[nodiscard]] std::map<int, Lease>& out() { return out_; }

@@ -44,7 +44,8 @@ Master::~Master() {
   watcher_.join();
 }
 
-/// Checks the age of all leases, in a separate thread, because the master may itself wait in its own group.
+/// Checks the age of all leases. Runs in a separate thread, because rank 0 may be blocked in a collective
+/// operation of its own group.
 void Master::watch() {
   std::unique_lock guard(mutex_);
   while (!wake_.wait_for(guard, std::chrono::milliseconds(500), [this] { return ending_; })) {
@@ -97,7 +98,7 @@ void Master::poll() try {
     if (lease.empty()) --waiting_leaders_;
   }
 } catch (const std::exception& e) {
-  end_all_ranks(e.what());  // the group would wait for its reply forever
+  end_all_ranks(e.what());  // the group would otherwise wait forever for a reply
 }
 
 void Master::serve_to_the_end() {

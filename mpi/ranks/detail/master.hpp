@@ -16,8 +16,8 @@ namespace swingbank::mpi::ranks {
 /// Scheduler of a dataset's shards.
 class Master {
  public:
-  /// `missing`: shards to generate; `leaders`: number of groups led by other ranks than 0. A lease older than
-  /// `timeout` [s] ends the program; 0: warning only.
+  /// `missing`: shards to generate; `leaders`: number of groups whose leader is not rank 0. A lease older
+  /// than `timeout` [s] ends the program; 0: warning only.
   Master(MPI_Comm world, JournalKeeper& journal, Progress& progress, std::deque<std::uint64_t> missing,
          int leaders, double timeout);
   ~Master();

@@ -1,5 +1,5 @@
 #pragma once
-// Messages between group leaders and master, and waiting for them without busy polling.
+// Messages between group leaders and the master, and functions that wait for messages without busy polling.
 #include <mpi.h>
 
 #include <cstdint>
@@ -13,11 +13,11 @@ namespace swingbank::mpi::ranks {
 
 constexpr int kReportTag = 1, kLeaseTag = 2, kAuditTag = 3;
 
-/// Report of a group leader, with which it requests the next lease.
+/// Report of a group leader on its lease; it is also the request for the next one.
 struct Report {
   std::vector<store::JournalLine> finished;  ///< finished shards of the lease, already on disk
   double seconds = 0.0;                      ///< time for these shards [s]
-  std::vector<Problem> problems;             ///< reasons why others failed
+  std::vector<Problem> problems;             ///< reasons why other shards failed
   bool stop = false;                         ///< whether the group has received a stop signal
 };
 /// Returns a report as text. Bytes that are not UTF-8 (a path may contain some) become U+FFFD.

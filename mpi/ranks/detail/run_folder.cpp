@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kLockFile = ".lock";    ///< lock of a run, exclusive or shared by runs of parts
-constexpr const char* kClaimFile = ".claim";  ///< lock while a run checks the folder and writes its header
+constexpr const char* kLockFile = ".lock";    ///< lock of a run; runs of different parts share it
+constexpr const char* kClaimFile = ".claim";  ///< lock while a part's run checks or completes the folder
 
 FolderLocks lock_folder(const fs::path& folder, const store::Part& part) {
   make_folder(folder);
@@ -33,7 +33,7 @@ FolderLocks lock_folder(const fs::path& folder, const store::Part& part) {
                fmt::format("part {} of {} in use", part.number, part.of), RunLock::Kind::alone)};
 }
 
-/// Exclusive access of one of several concurrent parts to the folder, while it checks or completes it.
+/// Lock that gives one of several concurrent parts exclusive access while it checks or completes the folder.
 class Claim {
  public:
   Claim(const fs::path& folder, const store::Part& part) {
@@ -100,7 +100,7 @@ void clear_leftovers(const fs::path& folder, const store::Part& part, std::uint6
   if (part.all()) {
     std::vector<fs::path> leftovers;
     for (const auto& entry : fs::recursive_directory_iterator(folder / "shards")) {
-      // Only files of this name pattern, because the folder may be a link to another.
+      // Only files of this name pattern, because the folder may be a link to a folder with other files.
       const std::string name = entry.path().filename().string();
       if (name.starts_with(".shard-") && name.ends_with(".h5.part")) leftovers.push_back(entry.path());
     }
@@ -111,7 +111,7 @@ void clear_leftovers(const fs::path& folder, const store::Part& part, std::uint6
     fs::remove(temporary_name(folder / store::shard_file_name(shard, shards)));
 }
 
-/// Throws InputError if the folder has parts of another number of parts: 2 of 3 and 2 of 4 overlap.
+/// Throws InputError if the folder has parts of another division: part 2 of 3 and part 2 of 4 overlap.
 void require_same_cut(const fs::path& folder, const store::Part& part) {
   if (part.all()) return;
   const std::string ending = fmt::format("-of-{}.jsonl", part.of);

@@ -1,5 +1,6 @@
 #pragma once
-// Preparation of a dataset folder: locks, header, remains of earlier runs and missing shards.
+// Preparation of a dataset folder: locks, header, removal of leftovers of earlier runs, and list of missing
+// shards.
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -11,11 +12,11 @@
 
 namespace swingbank::mpi::ranks {
 
-/// Locks that a run holds until it ends: on the folder, exclusive or shared with other parts, and on its own
-/// part.
+/// Locks that a run holds until it ends: one on the folder, exclusive or shared with other parts, and one on
+/// its part.
 struct FolderLocks {
   std::unique_ptr<RunLock> folder, part;
-  /// Removes the lock files from a folder that is refused.
+  /// Removes the lock files from a folder that the run rejects.
   void withdraw() {
     folder->withdraw();
     if (part) part->withdraw();
@@ -23,18 +24,19 @@ struct FolderLocks {
 };
 
 /// Locks the folder, writes its header if it is new, calls `furnish` while other parts wait, and removes
-/// temporary files of killed runs. Throws InputError if the folder is in use or contains anything else.
+/// temporary files of killed runs. Throws InputError if the folder is in use, contains a dataset of another
+/// config, or contains files but no dataset.
 FolderLocks enter(const GenerateOptions& options, const store::DatasetHeader& header,
                   const std::function<void()>& furnish);
 
-/// Returns whether the folder contains a dataset and is read-only. A complete dataset may be.
+/// Returns whether the folder contains a dataset and is read-only.
 bool is_archive(const std::filesystem::path& folder);
 /// Throws InputError if the folder's dataset has another config hash.
 void require_same_config(const std::filesystem::path& folder, const store::DatasetHeader& header);
 
-/// Returns the existing shards of this run's part.
+/// Returns the journalled shards of this run's part.
 std::vector<store::JournalLine> journalled(const GenerateOptions& options);
-/// Removes damaged shards from the journal with `repair`; otherwise throws InputError if there are any.
+/// Removes the damaged shards from the journal if `repair`; otherwise throws InputError if there are any.
 void settle(const std::filesystem::path& folder, const std::vector<store::BadShard>& bad, bool repair);
 /// Writes the index of a complete dataset (index.hpp).
 void finish(const GenerateOptions& options);

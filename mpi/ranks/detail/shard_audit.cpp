@@ -12,7 +12,7 @@ namespace swingbank::mpi::ranks {
 
 namespace {
 
-/// Returns the entries number rank, rank + size, ... as journal text.
+/// Returns the entries with the indices rank, rank + size, ... as journal text.
 std::string share_of(const std::vector<store::JournalLine>& lines, int rank, int size) {
   std::string text;
   for (auto i = static_cast<std::size_t>(rank); i < lines.size(); i += static_cast<std::size_t>(size))

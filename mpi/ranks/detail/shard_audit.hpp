@@ -12,8 +12,8 @@ struct ShardAudit {
   bool stopped = false;              ///< whether a stop signal ended it early; the same on all ranks
 };
 
-/// Checks the shards of `lines` with fault_of, each rank a part of them. `lines` matters on rank 0 only.
-/// Collective; throws the same InputError on all ranks.
+/// Checks the shards of `lines` with fault_of; each rank checks a part of them. `lines` is used on rank 0
+/// only. Collective; throws the same InputError on all ranks.
 ShardAudit audit_shards(MPI_Comm world, const std::filesystem::path& folder,
                         const store::DatasetHeader& header, const std::vector<store::JournalLine>& lines,
                         bool deep);

@@ -9,8 +9,8 @@
 
 namespace swingbank::mpi::ranks {
 
-/// Watches a step from construction to destruction. After a time, prints the step with the last errno value
-/// that this thread has received since its start.
+/// Watchdog of one step, from construction to destruction. After `warn_after`, prints the step with the last
+/// errno value that the calling thread has received since the step's start.
 class StepWatch {
  public:
   /// `step`: "create"; `where`: "shards/0.h5"; `warn_after`: time until the message.

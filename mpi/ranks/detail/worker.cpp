@@ -13,7 +13,8 @@
 namespace swingbank::mpi::ranks {
 
 namespace {
-/// Creates a folder and flushes its name to the disk, before the journal lists a shard in it.
+/// Creates a folder and flushes its entry to the disk, so that it is durable before the journal lists a shard
+/// in it.
 void make_durable_folder(const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder)) return;
   make_folder(folder);
@@ -53,8 +54,8 @@ store::JournalLine Worker::make(std::uint64_t shard) {
   return line;
 }
 
-/// Counts a block in the shard with its first draw, so that each block counts once for any division into
-/// shards and ranks.
+/// Counts a block in the shard that contains the block's first draw. Thus each block counts once for any
+/// division into shards and ranks.
 std::map<std::string, std::uint64_t> Worker::count_operating_points(const store::ShardData& part) const {
   const auto& point = study.config.operating_point;
   if (!point) return {};
