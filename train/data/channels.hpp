@@ -10,13 +10,13 @@
 
 namespace swingbank::train::data {
 
-/// Returns the number of a channel; -1 if the record has none of that name.
+/// Returns the index of a channel; -1 if the record has no channel of that name.
 inline int channel_index(const std::vector<std::string>& names, std::string_view name) {
   const auto found = std::ranges::find(names, name);
   return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
 
-/// Reports each of `required` that the record lacks. `why`: what needs them.
+/// Adds a problem for each channel of `required` that the record lacks. `why`: reason why it is needed.
 inline void require_channels(const std::vector<std::string>& names,
                              std::initializer_list<std::string_view> required, const std::string& why,
                              Problems& problems) {

@@ -41,9 +41,10 @@ void InputSelection::apply(const float* record, std::size_t record_samples, doub
 
 namespace {
 
-/// Returns the reactance between terminal and E: X''d or X'd in the middle of its box.
+/// Returns the reactance between terminal and E: the middle of the box of X''d or X'd, or a typical value.
 double shown_reactance(const mpi::store::DatasetHeader& d) {
-  constexpr double kTypical = 0.3;  // of X'd and X''d; E is only an input, an approximate value suffices
+  // A typical value of X'd and X''d suffices, because E is only an input.
+  constexpr double kTypical = 0.3;
   for (const char* name : {"Xdpp", "Xdp"}) {
     const auto at = std::ranges::find(d.parameter_names, name) - d.parameter_names.begin();
     const auto i = static_cast<std::size_t>(at);
@@ -63,7 +64,7 @@ double event_time(const mpi::store::DatasetHeader& d) {
   return event.front();
 }
 
-/// Returns the names of the record's channels; those that are not requested are empty.
+/// Returns the names of the record's channels, with an empty name for each channel that is not requested.
 std::vector<std::string> requested(const InputRecipe& recipe, const mpi::store::DatasetHeader& d) {
   std::vector<std::string> names = d.channel_names;
   for (auto& name : names)

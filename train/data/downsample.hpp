@@ -15,11 +15,12 @@ namespace swingbank::train::data {
 enum class InputForm {
   absolute,   ///< as recorded
   deviation,  ///< minus the value before the fault
-  /// Deviation divided by the row's root mean square deviation of the first channel. H and D follow from the
-  /// ratio of a machine's channels, so that a large machine with small deviations looks like any other.
+  /// Deviation divided by the row's root mean square deviation of the first channel. A large machine with
+  /// small deviations then has inputs like any other machine. H and D remain identifiable, because they
+  /// follow from the ratio of the channels.
   relative,
   both,     ///< absolute channels, then relative ones
-  physics,  ///< physical signals of the machine's equations, then steady values (Physics)
+  physics,  ///< signals of the machine's equations, then steady values (Physics)
   swing,    ///< integrals of the swing equation, then the noise level (SwingIntegrals)
 };
 /// Names used in experiment files, in order of the enumeration.
@@ -32,7 +33,7 @@ struct InputRecipe {
   double start_s = 0.0, end_s = 0.0;  ///< window [s], end excluded
   std::size_t slice = 1;              ///< keep every slice-th sample: 120/s and 4 give 30/s
   InputForm form = InputForm::absolute;
-  bool seconds_as_steps = false;  ///< with PCA: the components of one second are one step of a series
+  bool seconds_as_steps = false;  ///< with PCA: the components of a second form one step of a series
   bool shows_level = false;       ///< form physics: append the noise level after the steady values
   bool regressions = false;       ///< form physics only: append regressions between the signals
 };
@@ -43,11 +44,11 @@ struct InputSelection {
   std::size_t first = 0, step = 1, samples = 0;
   InputForm form = InputForm::absolute;
   double rate = 0.0;                    ///< after slicing [1/s]
-  std::optional<Physics> physics;       ///< form physics only: computes the series
-  std::optional<SwingIntegrals> swing;  ///< form swing only: computes the integrals
-  bool seconds_as_steps = false;        ///< order of the components in Features
-  bool shows_level = false;  ///< the last value is the noise level: level_input(), in the form swing itself
-  bool regressions = false;  ///< form physics only: Features append regressions
+  std::optional<Physics> physics;       ///< form physics only: converter to the series
+  std::optional<SwingIntegrals> swing;  ///< form swing only: converter to the integrals
+  bool seconds_as_steps = false;        ///< as in InputRecipe
+  bool shows_level = false;  ///< whether the last value is the noise level (form physics: level_input())
+  bool regressions = false;  ///< form physics only: Features append the regression coefficients
 
   [[nodiscard]] std::size_t outputs() const {
     if (swing) return SwingIntegrals::terms;

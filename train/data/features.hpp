@@ -1,6 +1,7 @@
 #pragma once
-// Features: a network's input computed from a record's series. Either normalisation, after optional PCA of
-// each second, or the whitening of the form "physics". Fitted on training rows only.
+// Features: a network's input, computed from a record's series. Either the series are normalised, after an
+// optional PCA of each second, or they are whitened (form "physics"). The transformation is fitted on
+// training rows only.
 #include <optional>
 #include <span>
 
@@ -14,21 +15,21 @@ namespace swingbank::train::data {
 struct FeatureSizes {
   std::size_t channels = 0, samples = 0;
   std::size_t pca_components = 0, pca_per_second = 0;  ///< 0: no PCA
-  std::size_t levels = 0, kept = 0, noisy = 0;         ///< of a whitening; kept 0: no whitening
-  std::size_t seconds_as_steps = 0;                    ///< 1: the components of a second are one step
-  std::size_t regressed = 0;                           ///< of a whitening: number of regression coefficients
+  std::size_t levels = 0, kept = 0, noisy = 0;         ///< WhiteningSizes; kept = 0: no whitening
+  std::size_t seconds_as_steps = 0;                    ///< 1: the components of a second form one step
+  std::size_t regressed = 0;                           ///< WhiteningSizes: number of regression coefficients
 };
 
 class Features {
  public:
-  /// Fits the features on `rows`. pca_components = 0: no PCA. Series are normalised per channel, components
-  /// per channel and component. The form "physics" is whitened, with pca_components components a channel. The
-  /// form "swing" stays as it is.
-  /// Throws InputError if a channel is constant over the rows.
+  /// Fits the features on `rows`. pca_components = 0: no PCA. Series are normalised per channel; with PCA,
+  /// per channel and component. The form "physics" is whitened, with pca_components components per channel.
+  /// The form "swing" is not changed. Throws InputError if a channel is constant over the rows.
   static Features fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                       std::size_t pca_components);
 
-  /// A whitened row is one channel. With seconds as steps, each component of a channel is a channel.
+  /// Returns the number of channels of the input. A whitened row is one channel. With seconds as steps, each
+  /// component of each channel becomes a channel.
   [[nodiscard]] std::size_t channels() const {
     return seconds_as_steps_ ? channels_ * groups_per_channel_ : channels_;
   }
@@ -37,7 +38,7 @@ class Features {
   }
   [[nodiscard]] const std::optional<Pca>& pca() const { return pca_; }
   [[nodiscard]] const Scale& scale() const { return scale_; }
-  /// Return the fitted state for a file: sizes, then arrays in the order of `restore`.
+  /// Return the fitted state for a file: sizes(), and arrays() in the order that `restore` expects.
   [[nodiscard]] FeatureSizes sizes() const;
   [[nodiscard]] std::vector<std::vector<float>> arrays() const;
   /// Restores features from a file. Throws Unusable if sizes and arrays do not match.
@@ -49,7 +50,7 @@ class Features {
 
  private:
   static Features of(Whitening whitening);
-  /// Returns features that are the values of a row, as one channel.
+  /// Returns features that pass the values of a row unchanged, as one channel.
   static Features unchanged(std::size_t values);
   /// Computes the normalised series of one row, channel after channel.
   void scaled(const float* series, float* row) const;

@@ -13,7 +13,7 @@
 
 namespace swingbank::train::data {
 namespace {
-constexpr std::size_t kStore = std::size_t{1} << 20;  ///< stored normal numbers, fitting into the cache
+constexpr std::size_t kStore = std::size_t{1} << 20;  ///< stored normal numbers; they fit into the cache
 constexpr double kZeroLevel = 1e-5, kMiddleLevel = 1e-3;
 
 double unit_interval(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }

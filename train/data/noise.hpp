@@ -1,7 +1,7 @@
 #pragma once
-// Measurement noise that is added to a dataset's records while they are read. A pure function of seed, draw,
-// row, channel and sample, so that every order of reading gives the same bytes. Magnitudes:
-// sim/core/measurement_noise.hpp.
+// Measurement noise that is added to a dataset's records while they are read. It is a pure function of seed,
+// draw, row, channel and sample, so that it does not depend on the order of reading.
+// sim/core/measurement_noise.hpp defines the magnitudes.
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -12,7 +12,8 @@
 
 namespace swingbank::train::data {
 
-/// Distribution of the noise level of training rows: 0 for a share of them, log-uniform for the others.
+/// Distribution of the noise level of training rows: 0 for the share `share_at_zero`, log-uniform in [low,
+/// high] for the others.
 struct NoiseLevels {
   double low = 0, high = 0, share_at_zero = 0;
 };
@@ -21,16 +22,17 @@ struct NoiseLevels {
 struct NoiseRecipe {
   double level = 0;  ///< 0: records are unchanged
   std::uint64_t seed = 1;
-  std::optional<NoiseLevels> training = {};  ///< present: every training row draws its own level
+  std::optional<NoiseLevels> training = {};  ///< if present, each training row has a random level
 };
 
-/// Noise of one reading.
+/// Noise realisation with which rows are read.
 struct Noise {
-  std::optional<double> level = {};  ///< of all rows; none: each row draws its own from NoiseRecipe::training
-  std::uint64_t draw = 0;            ///< number of the realisation; it also selects the drawn levels
+  std::optional<double> level = {};  ///< of all rows; none: random per row, from NoiseRecipe::training
+  std::uint64_t draw = 0;            ///< number of the realisation; also selects the random levels
 };
 
-/// Returns the network input that encodes a noise level; level 0 is encoded one decade below 0.01 %.
+/// Returns the network input that encodes a noise level: half the logarithm of level + 1e-5, relative to
+/// 1e-3. Level 0 is thus encoded as 0.001 %.
 float level_input(double level);
 /// Inverse of level_input().
 double level_of_input(float input);
@@ -41,24 +43,24 @@ class RecordNoise {
   RecordNoise(const mpi::store::DatasetHeader& dataset, const NoiseRecipe& recipe);
   [[nodiscard]] bool none() const { return recipe_.level == 0; }
   [[nodiscard]] double level(std::uint64_t row, const Noise& noise) const;
-  /// Adds noise to a record, channels x samples of the dataset's row `row`. If rows draw their levels, their
-  /// noise consists of segments of one stored series, which takes a tenth of the time.
+  /// Adds noise to a record, channels x samples of the dataset's row `row`. If each row has a random level,
+  /// the noise consists of segments of one stored series; this takes a tenth of the time.
   void add(std::uint64_t row, const Noise& noise, float* record) const;
-  /// As above, at the recipe's level with draw 0.
+  /// Adds noise of the recipe's level with draw 0.
   void add(std::uint64_t row, float* record) const { add(row, {recipe_.level}, record); }
 
  private:
   enum class Kind { phasor, frequency, field, speed };
   struct Noisy {
     Kind kind;
-    std::uint32_t key;  ///< of the quantity, independent of its channel; frequency uses theta's
+    std::uint32_t key;  ///< random key of the quantity; frequency has that of theta
   };
   void draw_new(std::uint64_t row, const Noisy& channel, std::uint64_t draw, double* out) const;
   void draw_from_store(std::uint64_t row, const Noisy& channel, std::uint64_t draw, double* out) const;
   void add_to(const Noisy& channel, double level, std::vector<double>& drawn, float* samples) const;
 
   NoiseRecipe recipe_;
-  std::vector<float> store_;  ///< stored normal numbers; empty unless rows draw their levels
+  std::vector<float> store_;  ///< stored normal numbers; empty unless rows have random levels
   std::vector<Noisy> channels_;
   std::size_t samples_ = 0;
   double rate_ = 0, system_frequency_ = 0;

@@ -7,7 +7,7 @@
 
 namespace swingbank::train::data {
 
-/// Mean and standard deviation per group (divided by the count). Sums are relative to each group's first
+/// Mean and standard deviation of each group (divisor: the count). Sums are relative to the group's first
 /// value, so that the deviation of a constant is exactly 0.
 class GroupMoments {
  public:
@@ -31,16 +31,16 @@ struct Scale {
   std::vector<float> mean, deviation;
 };
 
-/// Scaling of targets. A target is divided by its standard deviation without a shift: zero stays zero, as the
-/// network's ReLU output requires (parameters are not negative). If the sampling box extends below zero (an
-/// exciter's lower ceiling), its low end replaces zero. A constant parameter is divided by its magnitude.
+/// Scaling of targets. A target is divided by its standard deviation without subtracting the mean, because a
+/// ReLU output cannot be negative. If the sampling box extends below zero (an exciter's lower ceiling), its
+/// low end is subtracted first. A constant parameter is divided by its magnitude.
 struct TargetScale {
-  std::vector<double> mean;      ///< of the training targets [raw units]: baseline prediction
+  std::vector<double> mean;      ///< mean of the training targets, the baseline prediction [raw units]
   std::vector<double> unit;      ///< raw = scaled x unit + origin
   std::vector<double> origin;    ///< 0, or the box's low end if negative
-  std::vector<double> variance;  ///< of the training targets [raw units]
-  /// Fits the scale. values: all rows x parameters [raw units]; rows: training rows; low: low ends of the box
-  /// (empty: none is negative).
+  std::vector<double> variance;  ///< variance of the training targets [squared raw units]
+  /// Fits the scale. values: all rows x parameters [raw units]; rows: training rows; low: low ends of the
+  /// box; empty: none is negative.
   static TargetScale fit(const std::vector<double>& values, std::size_t parameters,
                          std::span<const std::uint64_t> rows, std::span<const double> low = {});
   /// Returns loss weights of the parameters' squared errors in scaled units: variance^power, normalised to

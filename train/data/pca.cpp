@@ -10,7 +10,7 @@
 namespace swingbank::train::data {
 namespace {
 
-/// First and second moments of one channel's seconds, in double precision.
+/// First and second moments of the one-second segments of a channel, in double precision.
 struct SecondMoments {
   Eigen::VectorXd sum;
   Eigen::MatrixXd square;

@@ -1,6 +1,6 @@
 #pragma once
-// Principal components per channel, as in the thesis: each second of a channel (60 samples at 60/s) is
-// replaced by its leading components (10), with one basis per channel.
+// Principal component analysis (PCA) of each channel, as in the thesis: each second of a channel (60 samples
+// at 60/s) is replaced by its 10 leading components. Each channel has one basis.
 #include <Eigen/Dense>
 #include <span>
 #include <vector>

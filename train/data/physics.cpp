@@ -9,7 +9,7 @@
 namespace swingbank::train::data {
 namespace {
 
-/// One signal of a row at the record's rate, computed and averaged.
+/// One signal of a row, computed at the record's rate and averaged over the bins.
 class Signal {
  public:
   explicit Signal(std::size_t samples) : values_(samples) {}
@@ -63,8 +63,9 @@ Physics::Physics(const std::vector<std::string>& names, const PhysicsWindow& win
   Problems problems;
   require_channels(names, {"P", "Q", "V"}, "currents follow from P, Q and V", problems);
   problems.raise();
-  constexpr double kFineUntil = 1.0, kMiddleUntil = 5.0;  // ends of the two finer spans after the event [s]
-  constexpr double kMiddleRate = 30, kCoarseRate = 15;    // bins [1/s]
+  // Ends of the two spans with finer bins, after the event [s].
+  constexpr double kFineUntil = 1.0, kMiddleUntil = 5.0;
+  constexpr double kMiddleRate = 30, kCoarseRate = 15;  // rates of the other bins [1/s]
   const auto sample = [&](double t) { return static_cast<std::size_t>(std::lround(t * window.rate)); };
   const std::size_t end = sample(window.end_s);
   for (std::size_t at = sample(window.start_s); at < end;) {

@@ -1,30 +1,30 @@
 #pragma once
 // Physical input signals, computed from the recorded channels: currents, the voltage behind the subtransient
-// reactance, and the integrals in the swing and field flux equations. They spare a network from learning
-// division and integration.
+// reactance, and the integrals in the swing and field flux equations. With these signals, a network need not
+// learn division and integration.
 #include <cstddef>
 #include <string>
 #include <vector>
 
 namespace swingbank::train::data {
 
-inline constexpr double kLeastVoltage = 1e-3;      ///< for bolted faults with zero terminal voltage [pu]
-inline constexpr double kNoisyLeastVoltage = 0.1;  ///< below it a current is noise divided by noise [pu]
+inline constexpr double kLeastVoltage = 1e-3;      ///< lower limit of V as a divisor, for bolted faults [pu]
+inline constexpr double kNoisyLeastVoltage = 0.1;  ///< the same for noisy records: noise dominates below [pu]
 
 /// Time of the event in the record, and the window of the input.
 struct PhysicsWindow {
   double rate = 0.0;                     ///< of the record [1/s]
   double start_s = 0.0, end_s = 0.0;     ///< window [s]
   double event_s = 0.0;                  ///< event time; the record is steady before [s]
-  double reactance = 0.0;                ///< X''d or X'd, between terminal and E [pu on the machine's base]
-  double least_voltage = kLeastVoltage;  ///< least divisor of P and Q when currents are computed [pu]
+  double reactance = 0.0;                ///< X''d or X'd between terminal and E [pu on the machine base]
+  double least_voltage = kLeastVoltage;  ///< lower limit of V as the divisor of P and Q [pu]
 };
 
-/// Channels in this order: P/V, Q/V, V, E, angle of E relative to the terminal, integral of P; with a speed
-/// channel: speed and its integral; with a field current: field current and its integral; with speed and
-/// frequency: frequency and the integral of their difference. All are relative to their mean before the
-/// event. Samples are means over bins: single samples until 1 s after the event, 1/30 s until 5 s, then 1/15
-/// s.
+/// Computation of the signals. Channels in this order: P/V, Q/V, V, E, angle of E relative to the terminal,
+/// integral of P. A record with speed adds speed and its integral; with field current, field current and its
+/// integral; with speed and frequency, frequency and the integral of their difference. All are relative to
+/// their mean before the event. Samples are means over bins: one sample of the record until 1 s after the
+/// event, 1/30 s until 5 s, then 1/15 s.
 class Physics {
  public:
   Physics() = default;
@@ -34,15 +34,15 @@ class Physics {
   [[nodiscard]] const PhysicsWindow& window() const { return window_; }
   [[nodiscard]] std::size_t channels() const;
   [[nodiscard]] std::size_t bins() const { return bins_.size(); }
-  /// Returns the number of steady values after the series: P, Q, V, E, its angle, and the field current if
-  /// recorded.
+  /// Returns the number of steady values after the series: P, Q, V, E, the angle of E, and the field current
+  /// if recorded.
   [[nodiscard]] std::size_t levels() const { return field_ >= 0 ? 6 : 5; }
-  /// Returns the number of samples of a record that are used, from its first.
+  /// Returns the number of used samples, counted from the record's first sample.
   [[nodiscard]] std::size_t samples() const { return bins_.back().first + bins_.back().count; }
   /// Returns the number of samples in each bin.
   [[nodiscard]] std::vector<float> bin_samples() const;
-  /// Computes the input of one row, whose channels are `stride` apart. out: channels() x bins(), then
-  /// levels().
+  /// Computes the input of one row. `stride`: distance of its channels in `record` [samples]; out: channels()
+  /// x bins() values, then levels() values.
   void apply(const float* record, std::size_t stride, float* out) const;
 
  private:

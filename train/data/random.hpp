@@ -28,12 +28,12 @@ constexpr std::uint64_t key(std::uint64_t seed, Purpose purpose, std::uint64_t a
   return mix(mix(mix(mix(seed) ^ static_cast<std::uint64_t>(purpose)) ^ a) ^ b);
 }
 
-/// Fisher-Yates shuffle. std::shuffle is not used: its order depends on the library.
+/// Shuffles by Fisher and Yates. The order of std::shuffle would depend on the standard library.
 template <class T>
 void shuffle(T* values, std::size_t count, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   for (std::size_t i = count; i > 1; --i) {
-    const std::uint64_t limit = ~std::uint64_t{0} - ~std::uint64_t{0} % i;  // no bias from the remainder
+    const std::uint64_t limit = ~std::uint64_t{0} - ~std::uint64_t{0} % i;  // larger draws would cause a bias
     std::uint64_t draw = random();
     while (draw >= limit) draw = random();
     std::swap(values[i - 1], values[draw % i]);

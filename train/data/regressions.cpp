@@ -4,7 +4,7 @@
 
 namespace swingbank::train::data {
 namespace {
-constexpr double kApart = 1e-12;  ///< ridge, relative to a signal's square: 1e-6 of its size
+constexpr double kApart = 1e-12;  ///< ridge, relative to a signal's mean square
 constexpr double kStill = 1e-24;  ///< ridge for a constant signal [pu^2]
 }  // namespace
 

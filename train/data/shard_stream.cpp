@@ -127,7 +127,7 @@ void ShardStream::append(mpi::store::Dataset more) {
 
 void ShardStream::load(const mpi::store::ShardInfo& shard, bool fits) {
   mpi::store::RowBlock block;
-  if (options_.trust)  // unchecked read
+  if (options_.trust)  // read without verification of the hash
     block = mpi::store::read_shard_apart(
         shard, {.records = fits, .parameters = true, .angle_valid = false, .draws = false});
   else

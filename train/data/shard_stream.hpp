@@ -1,6 +1,6 @@
 #pragma once
-// Access to a dataset's rows for training. Labels of all rows are always in memory. The series are kept in
-// memory if they fit; otherwise they are read in blocks ahead of use. The result is the same.
+// Access to a dataset's rows for training. The labels of all rows are always in memory. The series are kept
+// in memory if they fit; otherwise they are read in blocks ahead of use, with the same result.
 #include <cstdint>
 #include <functional>
 #include <future>
@@ -33,23 +33,24 @@ inline constexpr std::uint64_t kValidationDraw = std::uint64_t{1} << 32;  ///< l
 
 class ShardStream {
  public:
-  /// Reads every shard once, compares it with journal and header (read_checked), and keeps the labels, and
-  /// the series if they fit. With `trust` it reads only what it keeps and checks only shapes and config.
-  /// Throws InputError with each invalid shard, and with shard and row of a value that is not finite. `more`:
-  /// a dataset with further rows for training only; channels, samples and parameters must be equal.
+  /// Reads every shard once and compares it with journal and header (read_checked). Keeps the labels, and the
+  /// series if they fit. With `trust`, reads only what it keeps and checks only shapes and config. Throws
+  /// InputError that names each invalid shard, and the shard and row of each value that is not finite.
+  /// `more`: a dataset with further rows for training only; it must have the same channels, samples and
+  /// parameters.
   ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {},
               const std::optional<mpi::store::Dataset>& more = {});
 
-  /// Takes the shards of the dataset described by `header` from `next`, without a disk. Keeps labels and
-  /// series and discards the shards. The stream equals that of the same dataset read from disk. Throws
+  /// Gets the shards of the dataset that `header` describes from `next` instead of from disk. Keeps labels
+  /// and series and discards the shards. The stream equals that of the same dataset read from disk. Throws
   /// InputError if the series exceed the memory limit.
   ShardStream(const mpi::store::DatasetHeader& header, const std::function<mpi::store::ShardData()>& next,
               const InputRecipe& recipe, const StreamOptions& options = {});
 
   [[nodiscard]] const mpi::store::Dataset& dataset() const { return dataset_; }
-  /// Whether the stream has no records on disk.
+  /// Returns whether the dataset is only in memory and has no complete records on disk.
   [[nodiscard]] bool from_memory() const { return from_memory_; }
-  /// Returns the dataset with rows for training only. Its row numbers follow those of the first dataset.
+  /// Returns the dataset whose rows are for training only. Its row numbers follow those of the first dataset.
   [[nodiscard]] const std::optional<mpi::store::Dataset>& more() const { return more_; }
   [[nodiscard]] const InputSelection& selection() const { return selection_; }
   [[nodiscard]] const Labels& labels() const { return labels_; }
@@ -58,16 +59,17 @@ class ShardStream {
   [[nodiscard]] const NoiseRecipe& noise() const { return options_.noise; }
   /// Returns the noise of test rows.
   [[nodiscard]] Noise judged() const { return {noise().level}; }
-  /// Returns the noise of training rows in an epoch: that of test rows, unless rows draw their levels.
+  /// Returns the noise of training rows in an epoch: that of test rows, unless training rows have random
+  /// levels.
   [[nodiscard]] Noise training(std::uint64_t epoch) const {
     return noise().training ? Noise{{}, epoch} : judged();
   }
   /// Returns the noise of validation rows: the same in every epoch.
   [[nodiscard]] Noise validation() const { return training(kValidationDraw); }
-  /// Whether the series are kept in memory. Records whose noise varies are not kept as series.
+  /// Returns whether the series are kept in memory. If the noise varies, complete records are kept instead.
   [[nodiscard]] bool in_memory() const { return !series_.empty(); }
-  /// Reads rows. rows: row numbers of the dataset, in any order; out: rows x values of the selection. Noise
-  /// other than that of test rows requires NoiseRecipe::training.
+  /// Reads the series of rows. rows: row numbers of the dataset, in any order; out: rows x values of the
+  /// selection. Noise other than that of test rows is possible only with NoiseRecipe::training.
   void read(std::span<const std::uint64_t> rows, float* out, const Noise& noise) const;
   void read(std::span<const std::uint64_t> rows, float* out) const { read(rows, out, judged()); }
 
@@ -80,10 +82,10 @@ class ShardStream {
   [[nodiscard]] std::size_t kept() const;
   void keep_labels(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
   void keep_series(const mpi::store::RowBlock& block, const mpi::store::ShardInfo& shard);
-  /// Computes the series of a record, the dataset's row `row`, with its noise.
+  /// Computes the series of a record with its noise. `row`: number of the record in the dataset.
   void series_of(const float* record, const mpi::store::ShardInfo& shard, std::uint64_t row,
                  const Noise& noise, float* out) const;
-  /// Returns the fixed X'd of a row's machine [pu of the machine].
+  /// Returns the fixed X'd of a row's machine [pu on the machine base].
   [[nodiscard]] double reactance(std::uint64_t row) const;
   /// Reads one contiguous run of rows of a shard and copies the wanted ones.
   struct Wanted {
@@ -103,12 +105,12 @@ class ShardStream {
   StreamOptions options_;
   RecordNoise noise_;
   Labels labels_;
-  std::vector<float> series_;   ///< series as they are read, or
-  std::vector<float> records_;  ///< records as stored, if their noise varies; or neither
+  std::vector<float> series_;   ///< the series, or
+  std::vector<float> records_;  ///< the stored records, if the noise varies; both empty if they do not fit
 };
 
 /// Returns the order in which an epoch visits `rows` (ascending). Blocks of 256 neighbouring rows are
-/// shuffled, then the rows within each window of 64 blocks. The order depends on rows, seed and epoch only.
+/// shuffled, then the rows within each window of 64 blocks. The order depends only on rows, seed and epoch.
 /// Sets below 16,384 rows are shuffled completely.
 std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std::uint64_t seed,
                                        std::uint64_t epoch);
@@ -118,10 +120,11 @@ struct Batch {
   std::vector<float> series;  ///< rows x channels x samples
 };
 
-/// Batches of one epoch, read ahead by one chunk if the series are not in memory.
+/// Reader of an epoch's batches; it reads one chunk ahead if the series are not in memory.
 class BatchReader {
  public:
-  /// Starts at batch `first` of the order. `noise`: default is that of test rows.
+  /// Starts at batch `first`. `order`: rows in the order of reading; `batch`: rows per batch; `noise`:
+  /// default is that of test rows.
   BatchReader(const ShardStream& stream, std::vector<std::uint64_t> order, std::size_t batch,
               std::size_t first = 0, const std::optional<Noise>& noise = {});
   /// Reads the next batch. Returns false at the end.

@@ -55,7 +55,8 @@ std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
   return points;
 }
 
-/// Appends the rows for training only; those of generators set aside go to the recalibration rows.
+/// Appends the rows for training only to the training rows; rows of generators set aside become recalibration
+/// rows.
 void add_training_rows(const Labels& labels, const std::set<std::int32_t>& left_out, RowSplit& split) {
   for (std::uint64_t row = labels.judged; row < labels.rows; ++row) {
     if (left_out.contains(labels.generator[row])) continue;

@@ -1,7 +1,7 @@
 #pragma once
 // Split of the rows into training, validation and test. Rows that share a databank sample (the same parameter
-// values) or an event stay together: no test sample is seen in training under another fault, no test event at
-// another machine. Rows after Labels::judged are for training only.
+// values) or an event are in the same part. Thus training contains neither a test sample with another fault
+// nor a test event at another machine. Rows with numbers from Labels::judged are for training only.
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -13,7 +13,7 @@ namespace swingbank::train::data {
 /// Row numbers of the dataset, ascending.
 struct RowSplit {
   std::vector<std::uint64_t> train, validation, test;
-  std::vector<std::int32_t> set_aside = {};     ///< bus numbers of the generators for recalibration
+  std::vector<std::int32_t> set_aside = {};     ///< bus numbers of the generators used only for recalibration
   std::vector<std::uint64_t> calibration = {};  ///< their rows
 };
 
@@ -24,22 +24,23 @@ struct LeaveOneOut {
   std::int32_t generator = 0;
   double validation_share = 0.0;
   std::uint64_t seed = 0;
-  /// Generator whose rows are the test instead; rows of `generator` are then not used at all. Recipes are
-  /// chosen in this way without using the generator that the table leaves out.
+  /// Generator whose rows are the test rows instead of those of `generator`, which are then not used at all.
+  /// Thus recipes can be chosen without the generator that the table leaves out.
   std::optional<std::int32_t> judged = {};
   std::size_t set_aside = 0;  ///< number of generators for recalibration
 };
-/// Test: every row of one generator. Of the other generators' databank samples `validation_share` is for
-/// validation and the rest for training, except for the generators set aside. Throws InputError if the
-/// generator has no rows or is the only one.
+/// Returns the split whose test rows are all rows of one generator. Of the other generators' databank
+/// samples, `validation_share` is for validation and the rest for training, except for the generators set
+/// aside. Throws InputError if the generator has no rows or is the only one.
 RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan);
-/// Test: the whole dataset. Of the rows for training only, a share of the databank samples is for validation
-/// and the rest for training. Throws InputError if one of the three parts is empty.
+/// Returns the split whose test rows are the whole dataset. Of the databank samples of the rows for training
+/// only, `validation_share` is for validation and the rest for training. Throws InputError if one of the
+/// three parts is empty.
 RowSplit split_across(const Labels& labels, double validation_share, std::uint64_t seed);
-/// Keeps a share of the training rows: the first of the dataset and the first of the training dataset, as if
-/// both were smaller. Throws InputError if no row remains.
+/// Keeps a share of the training rows: the first rows of the dataset and of the training dataset, as if both
+/// were smaller. Throws InputError if no row remains.
 void keep_share(RowSplit& split, const Labels& labels, double share);
-/// Returns the bus numbers of the generators with rows, ascending: one fold each.
+/// Returns the bus numbers of the generators with rows, ascending. Each generator is one fold.
 std::vector<std::int32_t> generators(const Labels& labels);
 
 }  // namespace swingbank::train::data

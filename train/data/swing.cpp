@@ -16,18 +16,19 @@ namespace {
 using Eigen::Index, Eigen::VectorXd;
 
 constexpr double kTaper = 0.3;             ///< duration of the taper at each end [s]
-constexpr double kHighestFrequency = 4.0;  ///< of the test functions [Hz]
-/// A fault is cleared where the voltage changes by more than this between two samples [pu], or by more than
-/// this many noise levels.
+constexpr double kHighestFrequency = 4.0;  ///< highest frequency of the test functions [Hz]
+/// The clearing of a fault is detected by a voltage change between two samples above kVoltageStep [pu] and
+/// above kNoiseSteps times the noise level.
 constexpr double kVoltageStep = 0.03, kNoiseSteps = 9;
-/// Samples after a voltage step that the integrals leave out, because the step is within a sampling interval.
+/// Number of samples after a voltage step that the integrals omit, because the step occurs within a sampling
+/// interval.
 constexpr std::size_t kAfterStep = 2;
-constexpr double kVoltageFloor = 0.1;  ///< below it a current is noise divided by noise [pu]
+constexpr double kVoltageFloor = 0.1;  ///< lower limit of V as a divisor: noise dominates below [pu]
 
 /// Value, first and second derivative of a function of time.
 using Derivatives = std::array<double, 3>;
 
-/// Returns a smooth rise from 0 to 1 while x does, with continuous second derivative.
+/// Returns a smooth step from 0 at x = 0 to 1 at x = 1, with continuous second derivative.
 Derivatives rise(double x) {
   const double z = std::clamp(x, 0.0, 1.0);
   return {z * z * z * (10 - 15 * z + 6 * z * z), 30 * z * z * (1 - z) * (1 - z),
@@ -122,7 +123,8 @@ void SwingIntegrals::apply(const float* record, std::size_t stride, double level
     speed_deviation[i] = w[k];
     delta[i] = theta[k] + std::atan2(reactance * P[k] / voltage, voltage + reactance * Q[k] / voltage);
   }
-  delta.array() -= delta.mean();  // the integrals of the derivatives of a test function are zero
+  // The mean affects rounding errors only, because derivatives of test functions integrate to zero.
+  delta.array() -= delta.mean();
   const double per_angle = -1 / (constants::turn * window_.system_frequency);
   const auto write = [&](Term term, const VectorXd& integrals) {
     Eigen::Map<Eigen::VectorXf>(out + static_cast<std::size_t>(term) * functions(), value_.cols()) =

@@ -1,6 +1,6 @@
 #pragma once
-// Weak form of the swing equation: integrals of the recorded signals with smooth test functions. No recorded
-// signal is differentiated, and the noise of many samples averages out.
+// Weak form of the swing equation: integrals of the recorded signals with smooth test functions. The
+// integrals need no derivative of a recorded signal and average the noise of many samples.
 #include <Eigen/Dense>
 #include <cstddef>
 #include <string>
@@ -25,15 +25,16 @@ struct SwingWindow {
 ///
 /// \f[ -2H \int \phi' \omega + D \int \phi\, \omega = \int \phi\, (P_0 - P) \f]
 ///
-/// with the speed deviation \f$ \omega \f$ [pu], the power P and its mean before the event P0 [pu of the
-/// machine]. The speed follows from the channel "speed" and, by integration by parts, from the rotor's angle
+/// with the speed deviation \f$ \omega \f$ [pu], the power P and its mean before the event P0 [pu on the
+/// machine base]. The speed follows from the channel "speed" and, by integration by parts, from the rotor's
+/// angle
 /// \f$ \delta = \theta + \arg(V + jX'_d I) \f$:
 ///
 /// \f[ \int\phi\,\omega = -\frac{1}{\omega_0}\int\phi'\delta, \qquad
 ///     \int\phi'\omega = -\frac{1}{\omega_0}\int\phi''\delta \f]
 ///
-/// Term `one` is \f$ \int\phi \f$, by which an error of P0 enters. Test functions are cosines and sines up to
-/// 4 Hz with a taper of 0.3 s at both ends.
+/// Term `one` is \f$ \int\phi \f$, the coefficient of an error of P0. Test functions are cosines and sines up
+/// to 4 Hz with a taper of 0.3 s at both ends.
 class SwingIntegrals {
  public:
   /// Terms in the order of the output.
@@ -47,19 +48,19 @@ class SwingIntegrals {
   [[nodiscard]] const SwingWindow& window() const { return window_; }
   /// Returns the number of test functions.
   [[nodiscard]] std::size_t functions() const { return static_cast<std::size_t>(value_.cols()); }
-  /// Returns the number of samples of a record that are used, from its first.
+  /// Returns the number of used samples, counted from the record's first sample.
   [[nodiscard]] std::size_t samples() const;
-  /// Computes the integrals of one row, whose channels are `stride` apart. `level`: noise level; `reactance`:
-  /// X'd [pu of the machine]; out: terms x functions().
+  /// Computes the integrals of one row. `stride`: distance of its channels in `record` [samples]; `level`:
+  /// noise level; `reactance`: X'd [pu on the machine base]; out: terms x functions().
   void apply(const float* record, std::size_t stride, double level, double reactance, float* out) const;
 
  private:
   [[nodiscard]] std::size_t first_sample(const float* V, double level) const;
 
   SwingWindow window_;
-  /// Test functions, their first and second derivatives, times the step: [sample][function].
+  /// Test functions and their first and second derivatives, times the sampling interval: [sample][function].
   Eigen::MatrixXd value_, derivative_, curvature_;
-  std::size_t steady_ = 0, event_ = 0, start_ = 0;  ///< samples before the event; of the event; of start_s
+  std::size_t steady_ = 0, event_ = 0, start_ = 0;  ///< steady samples; indices of event_s and start_s
   int P_ = -1, Q_ = -1, V_ = -1, speed_ = -1, frequency_ = -1;
 };
 

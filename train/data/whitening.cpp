@@ -13,15 +13,17 @@ namespace swingbank::train::data {
 namespace {
 
 using Eigen::Index;
-constexpr std::size_t kRowsToFit = 8000;  ///< fifteen times the number of fitted components
+constexpr std::size_t kRowsToFit = 8000;  ///< about fifteen times the number of fitted components
 constexpr std::size_t kRowsOfWidths = 5000;
-constexpr float kMiddleInDeviations = 2.56f;  ///< distance of a normal distribution's 10 % and 90 % quantiles
-constexpr float kStillRow = 1e-6f;            ///< size of a constant row [pu]
-constexpr double kRank = 1e-9;                ///< relative variance below which a component is rounding
+/// Distance of the 10 % and 90 % quantiles of a normal distribution, in standard deviations.
+constexpr float kMiddleInDeviations = 2.56f;
+constexpr float kStillRow = 1e-6f;  ///< added to the size of a row, which may be constant [pu]
+constexpr double kRank = 1e-9;      ///< relative variance up to which a component is rounding error
 constexpr std::size_t kRowsOfNoise = 5000;
-constexpr double kSmallLevel = 1e-4;  ///< level at which noise is measured; its effect is proportional to it
-constexpr float kWidestCoefficient = 4.0f;  ///< in widths; clipped beyond
-constexpr float kLongestNoise = 3.0f;  ///< of a row, in medians: a small voltage near a fault amplifies noise
+constexpr double kSmallLevel = 1e-4;        ///< level at which the noise, proportional to it, is measured
+constexpr float kWidestCoefficient = 4.0f;  ///< limit of a coefficient's deviation from its median, in widths
+/// Limit of a row's noise, as a multiple of the median: a low voltage near a fault amplifies the noise.
+constexpr float kLongestNoise = 3.0f;
 
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -180,8 +182,8 @@ void Whitening::apply(const float* series, std::size_t count, float* out) const 
     const std::size_t values = sizes_.channels * sizes_.samples + sizes_.levels + 1;
     for (Index i = 0; i < row.rows(); ++i) {
       const float noise_input = series[static_cast<std::size_t>(i + 1) * values - 1];
-      // Wiener filter: expected value of a signal of variance 1 observed with noise of this standard
-      // deviation.
+      // Wiener filter: expected value of a signal of variance 1 that is observed with noise of standard
+      // deviation level x noise_.
       const auto level =
           static_cast<float>(level_of_input(noise_input)) / std::exp(parts(i, parts.cols() - 1));
       row.row(i).head(kept).array() /= 1.0f + (level * noise_.array()).square();
@@ -189,7 +191,7 @@ void Whitening::apply(const float* series, std::size_t count, float* out) const 
     }
   }
   const auto bounded = static_cast<Index>(length() - sizes_.regressed);
-  // limits values far outside the range of the training rows
+  // reduces values far outside the range of the training rows
   row.leftCols(bounded) = row.leftCols(bounded).unaryExpr([](float v) { return std::asinh(v); });
   if (sizes_.regressed == 0) return;
   const auto values =

@@ -1,8 +1,9 @@
 #pragma once
-// Transformation of series to a short row of uncorrelated numbers of equal size. Each channel is divided by
-// the row's size; principal components per channel are whitened together and softly bounded. For rows of many
-// noise levels the numbers are rotated until their noise is uncorrelated as well, and shrunk by the signal
-// share at the row's level. Fitted on training rows only.
+// Transformation of series to a short row of uncorrelated numbers of equal variance. Each channel is divided
+// by the row's size, the root mean square of the first channel. The principal components of all channels are
+// whitened together and bounded by asinh. For rows with different noise levels, the numbers are also rotated
+// until their noise is uncorrelated, and multiplied by the signal's share of the variance at the row's noise
+// level. Fitted on training rows only.
 #include <Eigen/Dense>
 #include <span>
 #include <vector>
@@ -11,29 +12,31 @@
 
 namespace swingbank::train::data {
 
-/// Sizes: channels, samples of a channel, values after the series; kept components per channel and in total.
-/// `noisy`: 1 if the noise level follows the values, else 0. `regressed`: number of regression coefficients.
+/// Sizes of a whitening: channels, samples per channel, values after the series (`levels`), components per
+/// channel, kept components in total. `noisy`: 1 if the noise level is the last value, else 0. `regressed`:
+/// number of regression coefficients.
 struct WhiteningSizes {
   std::size_t channels = 0, samples = 0, levels = 0, components = 0, kept = 0, noisy = 0, regressed = 0;
 };
 
 class Whitening {
  public:
-  /// Fits on `rows`, or on as many as determine the components. The row's size is the root mean square of the
-  /// first channel. Throws InputError for more components than samples.
+  /// Fits on `rows`, or on a sufficient number of evenly spaced ones. Throws InputError for no components or
+  /// for more components than samples.
   static Whitening fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                        std::size_t components);
 
   [[nodiscard]] const WhiteningSizes& sizes() const { return sizes_; }
-  /// Returns the length of a transformed row: whitened numbers, unchanged levels and logarithm of the size,
-  /// the encoded noise level, and the bounded regression coefficients relative to their medians.
+  /// Returns the length of a transformed row: whitened numbers, scaled steady values and logarithm of the
+  /// size, encoded noise level, and regression coefficients relative to their medians and widths.
   [[nodiscard]] std::size_t length() const {
     return sizes_.kept + sizes_.levels + 1 + sizes_.noisy + sizes_.regressed;
   }
   /// Transforms rows. series: `count` rows of channels x samples + levels + noisy values; out: count x
   /// length().
   void apply(const float* series, std::size_t count, float* out) const;
-  /// Return the fitted state for a file, and restore it. restore() throws Unusable if the sizes do not match.
+  /// Return the fitted state for a file, and restore it from one. restore() throws Unusable if the sizes do
+  /// not match.
   [[nodiscard]] std::vector<std::vector<float>> arrays() const;
   static Whitening restore(const WhiteningSizes& sizes, std::span<const std::vector<float>> arrays);
   static std::size_t array_count(const WhiteningSizes& sizes) {
@@ -42,26 +45,27 @@ class Whitening {
 
  private:
   using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  /// Returns components of all channels, levels and logarithm of the size, before whitening.
+  /// Returns the components of all channels, the steady values and the logarithm of the size, before
+  /// whitening.
   [[nodiscard]] Rows components(const float* series, std::size_t count) const;
   void fit_bases(const Rows& series);
   void fit_whole(const Rows& components);
   /// Rotates the whitened numbers until their noise is uncorrelated. `clean`, `noisy`: series of the same
-  /// rows.
+  /// rows without and with noise.
   void fit_noise(const Rows& clean, const Rows& noisy);
-  /// Fits median and width of each coefficient over the rows.
+  /// Computes the median and width of each regression coefficient over the rows.
   void fit_regressions(const Rows& series, std::vector<float> weights);
   void apply_regressions(const float* series, float* out) const;
-  /// Returns the whitened numbers before the soft bound.
+  /// Returns the whitened numbers before the bound by asinh.
   [[nodiscard]] Rows whitened(const Rows& components) const;
 
   WhiteningSizes sizes_;
   std::vector<Eigen::RowVectorXf> mean_;  ///< per channel
   std::vector<Eigen::MatrixXf> basis_;    ///< per channel: samples x components
-  Eigen::RowVectorXf centre_, unit_;      ///< of the components
+  Eigen::RowVectorXf centre_, unit_;      ///< mean and standard deviation of the components
   Eigen::MatrixXf whole_;                 ///< components of all channels and levels x kept
-  Eigen::RowVectorXf noise_;  ///< noise deviation of the whitened numbers at a level equal to the row's size
-  std::vector<float> weights_, median_, width_;  ///< of the samples; of the coefficients
+  Eigen::RowVectorXf noise_;              ///< standard deviation of the numbers' noise if level = row size
+  std::vector<float> weights_, median_, width_;  ///< weights of samples; scale of coefficients
 };
 
 }  // namespace swingbank::train::data

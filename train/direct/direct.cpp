@@ -18,7 +18,7 @@ namespace swingbank::train::direct {
 namespace {
 
 namespace store = mpi::store;
-constexpr double kWeights = 1e-4;       ///< noise level that weights channels without noise
+constexpr double kWeights = 1e-4;       ///< noise level that determines channel weights without noise
 constexpr double kNoPrior = 1e3;        ///< prior deviation, in widths of the box
 constexpr std::size_t kRowsRead = 512;  ///< rows read at once
 enum class Method { closed_form, refined, curve_fit, floor };  ///< in order of kMethods
@@ -78,7 +78,7 @@ class Rows {
     }
   }
 
-  /// Estimates one row's parameters, inside the box; for the floor see direct.hpp.
+  /// Estimates one row's parameters, clamped to the box. For the floor see direct.hpp.
   void estimate(store::RowBlock& block, std::size_t row, std::uint64_t number, double* out) const {
     if (method_ == Method::floor) return floor(block, row, out);
     if (!noise_.none()) noise_.add(number, block.records.data() + row * block.channels * block.samples);
@@ -98,19 +98,19 @@ class Rows {
     if (method_ == Method::closed_form) return all.front();
     if (!noise_.none()) return sim::direct::most_probable_of(*effect_, r, all, unknown_).p;
     all.insert(all.begin(), sim::direct::refine_best(*effect_, r, all, free_, low_, high_).p);
-    if (!fluxes_) return all.front();  // the integrated swing equation is already exact
+    if (!fluxes_) return all.front();  // the fit of the integrated swing equation is already exact
     return sim::direct::most_probable_of(*effect_, weighted(r), all, anywhere()).p;
   }
-  /// Fits from the defaults only.
+  /// Fits with the defaults as the only start.
   [[nodiscard]] std::vector<double> fitted(const sim::Recording& r, const std::vector<double>& known) const {
     return sim::direct::most_probable(*effect_, noise_.none() ? weighted(r) : r, known, anywhere()).p;
   }
-  /// Returns a record without noise whose channels are weighted as if it had some.
+  /// Returns a noise-free record with the channel weights of noise level kWeights.
   static sim::Recording weighted(sim::Recording r) {
     r.noise = sim::MeasurementNoise{kWeights};
     return r;
   }
-  /// Returns the parameters with the box as the only prior.
+  /// Returns the priors of the parameters, which only bound them to the box.
   [[nodiscard]] std::vector<sim::direct::ParameterPrior> anywhere() const {
     auto all = unknown_;
     for (auto& f : all) f.deviation = kNoPrior * (f.high - f.low);
@@ -165,14 +165,15 @@ class Rows {
   }
   const store::Dataset& dataset_;
   const sim::Effect* effect_ = nullptr;
-  bool fluxes_ = false;  ///< whether there are states beyond angle and speed
+  bool fluxes_ = false;  ///< whether the machine has states other than angle and speed
   sim::Conventions conventions_;
   sim::FrequencyFilter filter_;
   Method method_;
   data::RecordNoise noise_;
   sim::MeasurementNoise level_;
-  double event_ = 0;                                   ///< [s]
-  std::map<std::int32_t, std::vector<double>> known_;  ///< by generator: constant parameters, else defaults
+  double event_ = 0;  ///< [s]
+                      /// Parameters by generator: the dataset's value if it is constant, else the default.
+  std::map<std::int32_t, std::vector<double>> known_;
   std::vector<double> low_, high_;
   std::vector<int> index_, free_;
   std::vector<sim::direct::ParameterPrior> unknown_;

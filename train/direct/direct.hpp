@@ -1,6 +1,5 @@
 #pragma once
-// Estimates without training: the machine's closed form, alone or refined. The tables show them beside the
-// networks as the result of solving the equations directly.
+// Estimates without training, by the machine's equations. The tables show them beside the networks.
 #include <array>
 #include <functional>
 #include <span>
@@ -14,21 +13,22 @@ namespace swingbank::train::direct {
 
 /// Methods:
 /// - "closed-form": linear least squares, on smoothed signals if there is noise.
-/// - "refined": maximum a posteriori estimate, started from the closed form. Without noise a
-///   Levenberg-Marquardt fit of the fluxes gives a further start, and channels are weighted as if their noise
-///   were 0.01 %.
+/// - "refined": maximum a posteriori estimate, started from the closed form. Without noise, a
+/// Levenberg-Marquardt fit of the fluxes gives a further start, and channels are weighted as if they had
+/// noise of 0.01 %.
 /// - "curve-fit": least squares of P, Q, speed and field current with played-in voltage, from the effect's
-///   defaults only, bounded by the box but without a prior. It corresponds to parameter derivation programs
-///   without another start (the thesis compares with EPRI's PPPD).
-/// - "floor": the truth plus the root of the Bayesian Cramer-Rao bound. Its squared error is the least mean
-///   squared error of any estimate from these noisy records.
+/// defaults only, bounded by the box but without a prior. It corresponds to programs such as EPRI's PPPD,
+/// with which the thesis compares.
+/// - "floor": the true value plus the square root of the Bayesian Cramer-Rao bound. Its mean squared error is
+/// the lower bound for any estimate from these noisy records.
 inline constexpr std::array<std::string_view, 4> kMethods = {"closed-form", "refined", "curve-fit", "floor"};
 bool is_method(std::string_view name);
 
-/// Returns estimates, rows x parameters [raw units], inside the sampling box, for rows of the dataset in
-/// ascending order. Uses complete records at full rate, whatever the network's input. `report`: called with
-/// the number of finished rows. Throws InputError if the machine has no closed form, a required channel is
-/// not recorded, parameters of other effects vary, or the floor is requested without noise.
+/// Returns estimates for rows of the dataset in ascending order: rows x parameters [raw units], inside the
+/// sampling box except for "floor". Uses complete records at full rate, independent of the networks' input.
+/// `report`: called with the number of finished rows. Throws InputError if the machine has no closed form, a
+/// required channel is not recorded, parameters of other effects vary, or the floor is requested without
+/// noise.
 std::vector<double> estimate(const mpi::store::Dataset& dataset, std::span<const std::uint64_t> rows,
                              std::string_view method, const data::NoiseRecipe& noise = {},
                              const std::function<void(std::size_t)>& report = {});

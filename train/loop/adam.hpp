@@ -19,12 +19,12 @@ class Adam {
   Adam(Adam&&) noexcept;
 
   /// Performs one step with the parameters' gradients and clears them. Parameters without a gradient are
-  /// unchanged. `decay`: matrices shrink by learning_rate x decay. `longest`: largest norm of the gradient of
-  /// all parameters together; 0: no clipping.
+  /// unchanged. `decay`: matrices are multiplied by 1 - learning_rate x decay. `longest`: largest norm of the
+  /// gradient over all parameters; a longer gradient is scaled down; 0: no clipping.
   void step(double learning_rate, double decay = 0.0, double longest = 0.0);
   [[nodiscard]] std::int64_t steps() const { return steps_; }
   void set_steps(std::int64_t steps) { steps_ = steps; }
-  /// Returns first moments of all parameters, then second moments, for a checkpoint.
+  /// Returns the first moments of all parameters, then the second moments, for a checkpoint.
   [[nodiscard]] std::vector<at::Tensor> moments() const;
 
  private:

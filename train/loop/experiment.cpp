@@ -14,9 +14,9 @@ namespace swingbank::train::loop {
 namespace {
 
 const std::vector<std::string> kSchedules = {"constant", "cosine"};
-// above it a phasor is no measurement
+// Range of noise levels. A phasor with more than 10 % noise is not a useful measurement.
 const Range kNoiseLevels = {0.0, 0.1, "", "levels of measurement noise, one run each"};
-constexpr double kLeastShare = 1e-3;  // of the training rows
+constexpr double kLeastShare = 1e-3;  // smallest share of the training rows
 
 std::vector<std::string> network_names() {
   std::vector<std::string> names;
@@ -25,8 +25,8 @@ std::vector<std::string> network_names() {
   return names;
 }
 
-/// Treatment of a missing key: a problem, its default, or the value of the preset that a network's table
-/// overrides.
+/// Treatment of a missing key: it is a problem, it has a default, or its value is that of the preset (in a
+/// network's table).
 enum class Missing { refused, standard, inherited };
 
 /// Reader of the keys of one table.
@@ -64,7 +64,8 @@ class Keys {
   Missing missing_;
 };
 
-/// Treatment of missing keys that have a default, in a preset (`complete`) or in a network's table.
+/// Return the treatment of missing keys with and without a default, in a preset (`complete`) or in a
+/// network's table.
 Missing default_of(bool complete) { return complete ? Missing::standard : Missing::inherited; }
 Missing required_of(bool complete) { return complete ? Missing::refused : Missing::inherited; }
 
@@ -89,7 +90,8 @@ void read_training(Config& c, const std::string& at, bool complete, TrainingReci
   extra.whole("set_aside", 0, t.set_aside, "generators whose rows calibrate the posterior only");
 }
 
-/// A network trained at many noise levels needs the level as an input, which only the form "physics" has.
+/// Reads the noise levels of the training. A network trained at many levels needs the level as an input; only
+/// the forms "physics" and "swing" provide it.
 void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, NetworkInput& input) {
   if (const std::string name = at + ".training_noise"; c.has(name)) {
     const auto range = c.require<std::vector<double>>(
@@ -140,8 +142,8 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
               "choose form = \"physics\", or leave regressions out");
 }
 
-/// Removes settings that a network that corrects estimates cannot have: the estimates are computed once, from
-/// records with one noise level, and there is no posterior.
+/// Removes settings that are impossible for a network that corrects estimates. The estimates are computed
+/// once, from records with one noise level, and have no posterior.
 void train_as_judged(TrainingRecipe& t) {
   t.noise_levels.reset();
   t.posterior_epochs = t.set_aside = 0;
@@ -163,7 +165,7 @@ void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
                 j.shares);
 }
 
-/// A table with the name of a network overrides settings for that network only.
+/// Reads a preset. A table in it with the name of a network overrides settings for that network only.
 Preset read_preset(Config& c, const std::string& name) {
   const std::string at = "preset." + name;
   Preset p;
@@ -320,7 +322,7 @@ std::vector<Task> Experiment::tasks(const std::string& preset_name) const {
   for (const auto& network : preset(preset_name).networks) {
     const Judging& judged = judging(preset_name, network);
     for (const double noise : judged.noise) {
-      if (network == "floor" && noise == 0.0) continue;  // no floor without noise
+      if (network == "floor" && noise == 0.0) continue;  // the floor is not defined without noise
       for (const auto& fold : left_out) all.push_back({network, noise, fold});
     }
     for (const double share : judged.shares)

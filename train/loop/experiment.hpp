@@ -16,37 +16,38 @@ namespace swingbank::train::loop {
 /// Training settings of a network.
 struct TrainingRecipe {
   std::size_t epochs = 0, batch = 0;
-  double learning_rate = 0.0;  ///< of Adam
-  std::string schedule;        ///< "constant", or "cosine": short warm-up, then down to 1 % over the epochs
-  std::size_t patience = 0;    ///< epochs without improvement before stopping
-  double validation_share = 0.0;  ///< of the training generators' databank samples (leave-one-out)
-  /// Exponent of the loss weights: a parameter's squared error in units of its variance is weighted by
-  /// variance^power. 0: equal weights; 1: raw units, as in the tables.
+  double learning_rate = 0.0;     ///< of Adam
+  std::string schedule;           ///< "constant", or "cosine": short warm-up, then decay to 1 %
+  std::size_t patience = 0;       ///< epochs without improvement before stopping
+  double validation_share = 0.0;  ///< share of the training generators' databank samples
+  /// Exponent of the loss weights: variance^power is the weight of a parameter's squared error, relative to
+  /// its variance. 0: equal weights; 1: squared error in raw units, as in the tables.
   double loss_power = 0.0;
-  double weight_decay = 0.0;   ///< decoupled, of matrices (Loshchilov and Hutter 2019)
+  double weight_decay = 0.0;   ///< decoupled decay of matrices (Loshchilov and Hutter 2019)
   double clip = 0.0;           ///< largest gradient norm; 0: no clipping
-  double average = 0.0;        ///< averaged weights' decay factor per step; 0: no averaging
-  bool training_rows = false;  ///< train on the rows of the training dataset too
-  std::string kind = {};       ///< file of train/networks; usually the name it has in the experiment
-  std::string corrects = {};   ///< method of train/direct whose estimates it corrects; empty: none
-  /// Present: every row draws a noise level in every epoch, and the level is an input, so that the network
-  /// serves all levels. Absent: rows train with the noise of the test rows.
+  double average = 0.0;        ///< decay factor of the averaged weights per step; 0: no averaging
+  bool training_rows = false;  ///< whether to train on the training dataset's rows too
+  std::string kind = {};       ///< file name in train/networks; usually its name in the experiment
+  std::string corrects = {};   ///< method of train/direct whose estimates the network corrects; empty: none
+  /// Distribution of the noise levels of training rows. If present, every row has a random level in every
+  /// epoch, and the level is an input; one network then serves all levels. If absent, training rows have the
+  /// noise of the test rows.
   std::optional<data::NoiseLevels> noise_levels = {};
-  std::size_t posterior_epochs = 0;  ///< of the posterior head; 0: no posterior
-  std::size_t set_aside = 0;         ///< number of generators whose rows recalibrate and do not train
+  std::size_t posterior_epochs = 0;  ///< epochs of the posterior head; 0: no posterior
+  std::size_t set_aside = 0;         ///< number of generators used for recalibration, not training
 };
 
 /// Input of a network.
 struct NetworkInput {
   data::InputRecipe recipe;
-  std::size_t pca_components = 0;  ///< per second and channel, or per channel of form "physics"; 0: none
+  std::size_t pca_components = 0;  ///< per second and channel; form "physics": per channel; 0: no PCA
 };
 
 /// Evaluation of a network.
 struct Judging {
   std::vector<double> noise;        ///< levels (sim/core/measurement_noise.hpp); 0: no noise
-  std::size_t test_rows = 0;        ///< approximate number, evenly spaced; 0: all
-  std::vector<double> shares = {};  ///< of the training rows: one more run each, at the first level and fold
+  std::size_t test_rows = 0;        ///< approximate number of rows, evenly spaced; 0: all
+  std::vector<double> shares = {};  ///< of the training rows; one more run each (first level and fold)
 };
 
 struct Preset {
@@ -63,23 +64,23 @@ struct Preset {
 struct Task {
   std::string network;
   double noise = 0.0;
-  std::string fold;    ///< bus number of the left-out generator; "none": the experiment splits its rows
-  double share = 1.0;  ///< of the training rows
+  std::string fold;    ///< bus number of the left-out generator; "none": no leave-one-out split
+  double share = 1.0;  ///< share of the training rows
 };
 
-/// Keys of Experiment::print. "training_rows": networks that train on the training dataset; "tasks": network,
-/// noise level and fold of each run, and its share of the training rows if below 1.
+/// Keys of Experiment::print. "training_rows": networks that also train on the training dataset. "tasks":
+/// network, noise level and fold of each run, followed by its share of the training rows if below 1.
 inline constexpr std::array<const char*, 8> kPrintable = {
     "table", "dataset", "draws", "training_dataset", "training_draws", "training_rows", "networks", "tasks"};
 
 struct Experiment {
   std::filesystem::path file;
-  std::string table;  ///< "IV", "V" or "VI" of the thesis; else the file's own name, which results then bear
+  std::string table;  ///< "IV", "V" or "VI" of the thesis, else the file's name; part of result names
   std::string title;
   std::filesystem::path dataset;           ///< config of the dataset
   std::filesystem::path training_dataset;  ///< config of rows that only train; empty: none
-  bool leave_one_out = false;              ///< otherwise 60/20/20 by databank sample, or
-  bool across = false;                     ///< test on the whole dataset, train on the training dataset
+  bool leave_one_out = false;              ///< leave-one-out split; otherwise 60/20/20, or
+  bool across = false;                     ///< the test on the whole dataset after training on the other
   std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out; empty for a split
   std::map<std::string, Preset> presets;
 
@@ -90,8 +91,8 @@ struct Experiment {
   [[nodiscard]] const Judging& judging(const std::string& preset, const std::string& network) const;
   /// Returns the runs in execution order.
   [[nodiscard]] std::vector<Task> tasks(const std::string& preset) const;
-  /// Returns words for scripts, one a line; "none" if there are none. Throws InputError for a key outside
-  /// kPrintable.
+  /// Returns the value of a key for scripts, one word or task per line; "none" if there is none. Throws
+  /// InputError for a key outside kPrintable.
   [[nodiscard]] std::string print(const std::string& preset, const std::string& key) const;
 };
 

@@ -58,7 +58,7 @@ std::string record(const std::string& event) {
   const std::string length = bytes_of<std::uint64_t>(event.size());
   return length + bytes_of(masked_crc(length)) + event + bytes_of(masked_crc(event));
 }
-/// Returns fields 1 and 2 of an Event, time [s] and step; both are the epoch.
+/// Returns fields 1 and 2 of an Event: time [s] and step. Both are set to the epoch.
 std::string at(std::size_t epoch) {
   return "\x09" + bytes_of(static_cast<double>(epoch)) + "\x10" + variable_length(epoch);
 }

@@ -13,12 +13,12 @@ namespace swingbank::train::loop {
 struct EpochErrors {
   std::size_t epoch = 0;       ///< number, from 1
   double training = 0.0;       ///< mean loss of the training rows during the epoch
-  double validation = 0.0;     ///< loss of the validation rows after it
-  double learning_rate = 0.0;  ///< of its last step
+  double validation = 0.0;     ///< loss of the validation rows after the epoch
+  double learning_rate = 0.0;  ///< learning rate of the epoch's last step
 };
 using LearningCurve = std::vector<EpochErrors>;
 
-/// Returns the curve as JSON, one object per epoch, and reads it back.
+/// Convert the curve to JSON, one object per epoch, and back.
 nlohmann::json learning_curve_json(const LearningCurve& curve);
 LearningCurve read_learning_curve(const nlohmann::json& curve);
 
@@ -26,23 +26,23 @@ LearningCurve read_learning_curve(const nlohmann::json& curve);
 std::string learning_curve_csv(const LearningCurve& curve);
 
 /// Returns the curve as TensorBoard event records: scalars "loss/training", "loss/validation" and
-/// "learning_rate" at step = epoch; a record's time is its epoch in seconds. The first record, the format's
-/// version, is present if `begin` is 0; otherwise the records of the epochs from index `begin` on. Format: a
-/// TFRecord of a protocol buffer `Event` each
+/// "learning_rate" at step = epoch. A record's time is its epoch, as seconds. If `begin` is 0, the first
+/// record contains the format's version; otherwise the records begin with the epoch of index `begin`. Format:
+/// each record is a TFRecord with a protocol buffer `Event`
 /// (https://github.com/tensorflow/tensorboard/blob/2.12.0/tensorboard/compat/proto/event.proto).
 std::string tensorboard_events(const LearningCurve& curve, std::size_t begin = 0);
 
-/// Returns a chart of `columns` characters' width: both losses against the epoch, on a logarithmic
-/// axis if they are positive.
+/// Returns a text chart of both losses over the epochs, `columns` characters wide. The loss axis is
+/// logarithmic if all losses are positive.
 std::string learning_curve_chart(const LearningCurve& curve, std::size_t columns = 72);
 
 /// Files of a growing curve: <folder>/<run>.csv and <folder>/<run>/events.out.tfevents.*.
 class LearningCurveFiles {
  public:
-  /// Writes nothing yet.
+  /// Does not write yet.
   LearningCurveFiles(std::filesystem::path folder, std::string run);
-  /// Appends the new epochs; after a start, or if the curve is shorter than the files, writes them anew.
-  /// Throws InputError if a file cannot be written.
+  /// Appends the new epochs. At the first call, or if the curve is shorter than the files, writes the files
+  /// anew. Throws InputError if a file cannot be written.
   void write(const LearningCurve& curve);
 
  private:

@@ -29,7 +29,8 @@ using Clock = std::chrono::steady_clock;
 double processor_time() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 double seconds_since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-/// Returns the features of the rows; with guesses these are appended, and a row is then one channel.
+/// Returns the features of the rows. If `guesses` is not empty, appends each row's guesses; a row is then one
+/// channel.
 Tensor inputs_of(const data::Batch& batch, const data::Features& features, std::span<const float> guesses,
                  std::size_t all_rows) {
   const auto rows = static_cast<std::int64_t>(batch.rows.size());
@@ -46,12 +47,12 @@ Tensor inputs_of(const data::Batch& batch, const data::Features& features, std::
   return at::cat({x.reshape({rows, 1, -1}), g}, 2);
 }
 
-/// Position of a run, as stored in a checkpoint beside the arrays.
+/// Progress of a run, which a checkpoint stores beside the arrays.
 struct Position {
-  std::size_t epoch = 0, batch = 0;  ///< next one, from 0
+  std::size_t epoch = 0, batch = 0;  ///< next epoch and batch, from 0
   std::size_t best_epoch = 0, stale = 0;
   double best = std::numeric_limits<double>::infinity();
-  double loss_sum = 0.0;  ///< of this epoch so far, weighted by rows
+  double loss_sum = 0.0;  ///< sum of the losses of this epoch so far, weighted by rows
   double rows = 0.0, seconds = 0.0, processor_seconds = 0.0;
 };
 
@@ -104,7 +105,7 @@ class Loop {
   }
 
  private:
-  /// Trains one epoch. Returns false if the run was asked to stop, after saving it.
+  /// Trains one epoch. If the run is asked to stop, saves a checkpoint and returns false.
   bool epoch() {
     const std::vector<std::uint64_t> order = data::epoch_order(data_.train, settings_.seed, at_.epoch);
     const std::size_t whole = settings_.recipe.batch;
@@ -140,8 +141,8 @@ class Loop {
     return true;
   }
 
-  /// Performs one step. batch: this rank's rows; rows: those of all ranks; stop: this rank was asked to stop.
-  /// Returns true if any was.
+  /// Performs one step. batch: this rank's rows; rows: number of rows of all ranks; stop: whether this rank
+  /// was asked to stop. Returns whether any rank was asked to stop.
   bool step(const data::Batch& batch, std::size_t rows, bool stop) {
     StepSums sums{0.0, stop};
     if (!batch.rows.empty()) sums.loss = add_gradients(batch, static_cast<double>(rows));
@@ -165,14 +166,15 @@ class Loop {
     return sums.stop;
   }
 
-  /// Values of a step that all ranks know: mean loss of the batch, and whether a rank was asked to stop.
+  /// Values of a step that are summed over the ranks: mean loss of the batch, and whether a rank was asked to
+  /// stop.
   struct StepSums {
     double loss = 0.0;
     bool stop = false;
   };
 
-  /// Computes the gradients of this rank's part of the batch's mean loss. `rows`: of the whole batch. Returns
-  /// the part.
+  /// Computes the gradients of this rank's part of the batch's mean loss. `rows`: number of rows of the whole
+  /// batch. Returns this rank's part of the loss.
   double add_gradients(const data::Batch& batch, double rows) {
     const networks::StepRows place{data::key(settings_.seed, data::Purpose::dropout, at_.epoch, at_.batch),
                                    rank_, size_};
@@ -187,8 +189,8 @@ class Loop {
     return loss.item<double>() * own / rows;
   }
 
-  /// Sums the gradients and the step's values over the ranks, in one message: for each weight tensor the
-  /// number of ranks that have its gradient and the gradient, zero where a rank has none.
+  /// Sums the gradients and the step's values over the ranks, in one message. For each weight tensor, the
+  /// message contains 1 or 0 for whether this rank has its gradient, then the gradient, or zeros.
   void sum_gradients(StepSums& sums) {
     buffer_.clear();
     for (const Tensor& w : weights_) {
@@ -215,7 +217,7 @@ class Loop {
     at_.processor_seconds += static_cast<double>(from[2]);
   }
 
-  /// Returns the processor time of this rank since the last call [core-s].
+  /// Returns this rank's processor time since the last call [core-s].
   double unsummed_processor_time() {
     const double now = processor_time();
     return now - std::exchange(processor_begin_, now);
@@ -227,7 +229,8 @@ class Loop {
     return ((out - targets).square() * loss_weights_).mean();
   }
 
-  /// Returns "560 samples/s", with the limit set by the step's matrix products if they matter.
+  /// Returns "560 samples/s", followed by the limit that the matrix products impose, if they take a relevant
+  /// share of the time.
   [[nodiscard]] std::string rate(double samples_per_s) const {
     const double seconds_per_row =
         operations_per_row_ / (settings_.gflops * 1e9 * static_cast<double>(size_));
@@ -237,7 +240,8 @@ class Loop {
                        samples_per_s, percent, 1.0 / seconds_per_row);
   }
 
-  /// Updates the averaged weights. The average starts short, so that the initial weights lose influence soon.
+  /// Updates the averaged weights. The averaging time is short at first, so that the initial weights soon
+  /// lose influence.
   void average_in(double step) {
     if (average_.empty()) return;
     const double keep = std::min(settings_.recipe.average, (1.0 + step) / (10.0 + step));
@@ -254,8 +258,8 @@ class Loop {
     }
   }
 
-  /// Computes the epoch's validation error and keeps the weights if it is the least so far. `samples_per_s`:
-  /// training rate of the epoch.
+  /// Computes the epoch's validation error and stores the weights if it is the smallest so far.
+  /// `samples_per_s`: training rate of the epoch.
   void judge(double samples_per_s) {
     swap_average();
     judge_weights(samples_per_s);
@@ -389,14 +393,14 @@ class Loop {
   mpi::items::OneProcess alone_;
   const mpi::items::Ranks& ranks_;
   std::size_t rank_, size_;
-  std::vector<std::uint64_t> own_validation_;     // this rank's rows
-  std::vector<float> buffer_;                     // gradients on their way to the other ranks
+  std::vector<std::uint64_t> own_validation_;     // validation rows of this rank
+  std::vector<float> buffer_;                     // message of sum_gradients
   std::vector<Tensor> weights_, best_, average_;  // average_: empty unless weights are averaged
   Adam adam_;
   Tensor loss_weights_;
   std::int64_t outputs_ = 0;
   std::size_t batches_ = 0;
-  double operations_per_row_ = 0.0;  // matrix products of a training step; 0: not counted
+  double operations_per_row_ = 0.0;  // of the matrix products of a step; 0: not counted
   double rate_ = 0.0;                ///< learning rate of the last step
   LearningCurve curve_;
   Position at_;

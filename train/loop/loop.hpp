@@ -1,9 +1,9 @@
 #pragma once
 // Training loop: Adam with early stopping on the validation rows; the weights of the best epoch are kept. A
-// resumed run is bitwise equal: every random number is keyed by seed, epoch and batch, so that no generator
-// state is saved. Several ranks train one network together: each takes its rows of every batch, and the
-// gradients are summed. Weights, moments and the course of the training are then the same on all ranks, and
-// equal to those of one rank but for rounding.
+// resumed run is bitwise equal to an uninterrupted one. Every random number is a function of seed, epoch and
+// batch, so that no generator state is saved. Several ranks can train one network together: each processes a
+// part of every batch, and the gradients are summed. Weights and moments are then the same on all ranks, and
+// equal those of a run with one rank except for rounding.
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -31,8 +31,8 @@ struct LoopData {
   const data::Features& features;
   std::span<const std::uint64_t> train, validation;  ///< row numbers, ascending
   std::span<const float> targets;                    ///< scaled targets, all rows of the dataset x outputs
-  std::span<const float> guesses = {};  ///< all rows x outputs, scaled; appended to each row's features
-  std::span<const float> weights = {};  ///< of the outputs' squared errors, mean 1; empty: equal
+  std::span<const float> guesses = {};  ///< all rows x outputs [scaled]; appended to the features
+  std::span<const float> weights = {};  ///< of the outputs' squared errors, with mean 1; empty: equal
   /// Scalar loss of outputs and scaled targets; empty: weighted mean squared error.
   std::function<at::Tensor(const at::Tensor&, const at::Tensor&)> loss = {};
 };
@@ -41,14 +41,14 @@ struct LoopSettings {
   TrainingRecipe recipe;
   std::uint64_t seed = 1;
   std::filesystem::path checkpoint;          ///< empty: no checkpoints
-  const nlohmann::json* run = nullptr;       ///< identity of the run; other checkpoints are refused
-  double checkpoint_every_s = 30.0;          ///< within an epoch
-  double checkpoint_after_epoch_s = 2.0;     ///< at an epoch's end, if the last one is older
-  std::uint64_t first_draw = 0;              ///< draw of the first epoch's noise; each epoch has the next one
+  const nlohmann::json* run = nullptr;       ///< identity of the run; a checkpoint of another run is an error
+  double checkpoint_every_s = 30.0;          ///< interval of checkpoints within an epoch [s]
+  double checkpoint_after_epoch_s = 2.0;     ///< at an epoch's end: if the last checkpoint is older [s]
+  std::uint64_t first_draw = 0;              ///< noise draw of the first epoch; each epoch uses the next
   double gflops = 0.0;                       ///< rate of matrix products [GFLOP/s]; 0: unknown
   std::function<bool()> stop;                ///< polled before each batch; empty: stop_asked()
-  const mpi::items::Ranks* ranks = nullptr;  ///< that train together; null: this process alone
-  /// Called with the curve so far after each epoch, and after a resume, on rank 0; may be empty.
+  const mpi::items::Ranks* ranks = nullptr;  ///< ranks that train together; null: this process alone
+  /// Called on rank 0 with the curve so far, after each epoch and after a resume; may be empty.
   std::function<void(const LearningCurve&)> epoch_done;
 };
 
@@ -61,9 +61,9 @@ struct LoopReport {
   LearningCurve curve;             ///< all epochs, including before a resume
 };
 
-/// Trains the network; it ends with the weights of its best epoch. Collective over the ranks, which have the
-/// same data and settings and are not more than a batch has rows. Only rank 0 reads and writes the
-/// checkpoint. Throws InputError, on all ranks, if the loss is not finite or the checkpoint cannot be used.
+/// Trains the network, which then has the weights of its best epoch. Collective over the ranks: they must
+/// have the same data and settings, and a batch must have a row for each rank. Only rank 0 reads and writes
+/// the checkpoint. Throws InputError on all ranks if the loss is not finite or the checkpoint cannot be used.
 LoopReport train_network(networks::Network& network, const LoopData& data, const LoopSettings& settings,
                          TrainingProgress& progress);
 
@@ -75,7 +75,7 @@ std::vector<float> predict(networks::Network& network, const data::ShardStream& 
 
 /// Returns Adam's learning rate at a step (from 0) of `steps` steps.
 double learning_rate(const TrainingRecipe& recipe, std::uint64_t step, std::uint64_t steps);
-/// Seeds the generator of weights.
+/// Seeds torch's random generator, which creates the initial weights.
 void seed_torch(std::uint64_t key);
 
 }  // namespace swingbank::train::loop

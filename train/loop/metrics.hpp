@@ -1,5 +1,5 @@
 #pragma once
-// Scores of a network in raw units, and of the constant prediction as baseline.
+// Scores of a network in raw units, and of the baseline, a constant prediction.
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -11,9 +11,9 @@ namespace swingbank::train::loop {
 struct ParameterScore {
   std::string name, unit;
   double mse = 0.0;                                      ///< [unit^2]
-  double baseline_mse = 0.0;                             ///< of predicting the training mean [unit^2]
-  double variance = 0.0;                                 ///< of the parameter over the test rows [unit^2]
-  double box_variance = 0.0;                             ///< of the uniform sampling box, (high - low)^2 / 12
+  double baseline_mse = 0.0;                             ///< MSE of predicting the training mean [unit^2]
+  double variance = 0.0;                                 ///< variance over the test rows [unit^2]
+  double box_variance = 0.0;                             ///< variance over the box, (high - low)^2 / 12
   [[nodiscard]] std::optional<double> relative() const;  ///< mse / variance; none if variance is 0
 };
 
@@ -22,7 +22,7 @@ struct Score {
   double mse = 0.0, baseline_mse = 0.0;                          ///< mean over all parameters
   double mse_varied_only = 0.0, baseline_mse_varied_only = 0.0;  ///< over the parameters that vary in the box
   double ratio = 0.0;                                            ///< mse / baseline_mse
-  std::optional<double> H_ratio;                                 ///< for H alone; none if there is no H
+  std::optional<double> H_ratio;                                 ///< ratio of H alone; none without H
 };
 
 struct ScoreInput {

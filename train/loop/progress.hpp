@@ -11,12 +11,11 @@ class TrainingProgress {
  public:
   /// total: samples of all epochs; title: start of each line. Writes to standard error.
   TrainingProgress(std::string title, std::uint64_t total, bool quiet = false);
-  /// done: samples so far, including before a resume; note: text of the epoch.
+  /// done: samples so far, including those before a resume; note: text about the epoch.
   void update(std::uint64_t done, const std::string& note);
   /// Prints a separate line, on a terminal or in a log.
   void line(const std::string& text);
-  /// Shows a chart of several lines below the lines printed so far; replaces the former chart. Terminals
-  /// only.
+  /// Shows a chart below the lines printed so far, in place of the previous chart. Only on a terminal.
   void chart(const std::string& text);
   /// Leaves the shown chart on the terminal; later lines follow it.
   void keep_chart() { chart_lines_ = 0; }

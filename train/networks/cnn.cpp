@@ -1,6 +1,7 @@
 // The thesis's convolutional network, section "Networks": conv 256 filters, kernel N/4, same, ReLU, max-pool
 // 4; conv 512 filters, kernel N/4, same, ReLU, max-pool 2; dense 1024, dense 256, each ReLU and dropout 0.2;
-// one ReLU output per parameter. N is the input length. Inside, time is the first dimension.
+// one ReLU output per parameter. N is the input length. In this file, time is the first dimension of a
+// tensor.
 #include <ATen/ATen.h>
 
 #include "base/problem.hpp"
@@ -45,7 +46,8 @@ class Cnn final : public Network {
   }
 
  private:
-  /// With few input channels the direct product is short enough: rows (t, b), columns (tap, channel).
+  /// Computes the first convolution as one matrix product, which is fast enough for few input channels.
+  /// Matrix rows: (time, batch); columns: (tap, channel).
   Tensor first_convolution(const Tensor& x) {
     const auto batch = x.size(0), channels = x.size(1), n = x.size(2), left = (kernel_ - 1) / 2;
     const Tensor padded =

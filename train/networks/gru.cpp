@@ -1,4 +1,4 @@
-// The thesis's GRU: 512 units, the last state into one ReLU output per parameter.
+// The thesis's GRU: 512 units, whose last state feeds one ReLU output per parameter.
 #include "train/networks/detail/recurrent.hpp"
 
 namespace swingbank::train::networks {

@@ -13,15 +13,15 @@ class Tensor;
 
 namespace swingbank::train::networks {
 
-/// An estimated parameter: raw value = output x unit + origin; mean of its training targets [raw units].
+/// Estimated parameter: raw value = output x unit + origin. `mean`: mean of its training targets [raw units].
 struct Target {
   std::string name;
   double mean = 0, unit = 1, origin = 0;
 };
 
-/// outputs: number of estimated parameters, described by `targets`. output_bias (one each): initial bias of
-/// the output layer, the mean of the training targets in the scaled units of Features, so that no ReLU is
-/// dead at the first step.
+/// Shape of a network. `outputs`: number of estimated parameters, which `targets` describes. `output_bias`:
+/// initial bias of each output, the mean of its training targets in scaled units, so that every ReLU is
+/// active at the first step.
 struct NetworkShape {
   std::int64_t channels = 0, samples = 0, outputs = 0;
   std::vector<float> output_bias;
@@ -29,7 +29,7 @@ struct NetworkShape {
 };
 
 /// Rows of a training step. A unit's dropout depends on the step's key and on the row's position in the
-/// batch, so that it is the same however many ranks share the batch.
+/// batch. Thus it does not depend on the number of ranks that share the batch.
 struct StepRows {
   std::uint64_t key = 0;
   std::uint64_t first = 0, stride = 1;  ///< row i is at position first + i x stride
@@ -41,14 +41,14 @@ class Network {
   /// Returns batch x outputs from x, batch x channels x samples. `training` enables dropout; null:
   /// evaluation.
   virtual at::Tensor forward(const at::Tensor& x, const StepRows* training) = 0;
-  /// Returns auxiliary features of rows for a network built on this one, batch x numbers; the last are its
-  /// outputs. Undefined tensor: the network has no auxiliary outputs.
+  /// Returns auxiliary features of rows, batch x numbers, for a network that is built on this one. The last
+  /// numbers are the outputs. Undefined tensor: the network has no auxiliary features.
   virtual at::Tensor describe(const at::Tensor& x);
-  /// Returns the loss of the outputs of forward(x, &rows) for targets, batch x outputs [scaled units]: a mean
-  /// over the rows. Undefined tensor: the weighted squared error, and forward does not depend on `training`
-  /// but for dropout.
+  /// Returns the loss of the outputs of forward(x, &rows), a mean over the rows. `targets`: batch x outputs
+  /// [scaled units]. Undefined tensor: the loss is the weighted squared error, and `training` affects only
+  /// the dropout in forward().
   virtual at::Tensor loss(const at::Tensor& outputs, const at::Tensor& targets);
-  /// Returns the trained leaves, in a fixed order.
+  /// Returns the trained tensors (leaves), in a fixed order.
   virtual std::vector<at::Tensor> parameters() = 0;
 };
 

@@ -1,8 +1,9 @@
-// Swing equation in weak form as a layer: weighted linear least squares for H and D on the integrals of
-// train/data/swing. Learned are the weight of each test function, the share of the rotor's angle in the
-// speed, and the bias that noise in the regressors causes. The solution is differentiable, so all of these
-// are trained on the estimates' errors. The bias of a least-squares estimate with noisy regressors is
-// proportional to the noise's variance (Fuller, Measurement Error Models, 1987, section 1.2).
+// Layer that solves the swing equation in weak form: weighted linear least squares for H and D on the
+// integrals of train/data/swing. The learned quantities are the weight of each test function, the weight of
+// the rotor angle against the speed channel, and the bias that noise in the regressors causes. The solution
+// is differentiable, so these quantities are trained on the errors of H and D. The bias of a least-squares
+// estimate with noisy regressors is proportional to the noise variance (Fuller, Measurement Error Models,
+// 1987, section 1.2).
 #include <ATen/ATen.h>
 #include <fmt/format.h>
 
@@ -18,12 +19,12 @@ namespace {
 using at::Tensor;
 
 constexpr std::int64_t kIntegralTerms = 6;  ///< integrals per test function (train/data/swing.hpp)
-constexpr int kPasses = 3;                  ///< weights depend on H and D
+constexpr int kPasses = 3;                  ///< passes of the solution, because the weights depend on H and D
 constexpr double kBias = 1e-2;              ///< unit of the learned biases
-/// Precision of the prior on H and D about the box's mean, in units of the noise's variance. It only keeps
-/// the matrix regular.
+/// Precision of the prior of H and D around the mean of their training targets, in units of the noise
+/// variance. It only keeps the matrix regular.
 constexpr double kPriorPrecision = 1e-2;
-/// Mean samples before the event, which determine P0.
+/// Initial precision of P0: the usual number of samples before the event, whose mean is P0.
 constexpr double kSteadyCount = 238;
 
 class Swing final : public Network {
@@ -68,11 +69,11 @@ class Swing final : public Network {
     return at::cat({estimates, at::stack(deviations, 1), level.unsqueeze(1)}, 1);
   }
 
-  /// Returns the robust error in units of the layer's own standard deviation, and the error in units of the
-  /// noise level: rows of all levels weigh alike.
+  /// Returns the loss: a robust error in units of the layer's own standard deviation, plus the squared error
+  /// in units of the noise level. Thus rows of all noise levels have about the same weight.
   Tensor loss(const Tensor& out, const Tensor& targets) override {
     constexpr double kRobust = 3, kLargest = 1e5;
-    constexpr double kLeastDeviation = 1e-4, kLeastLevel = 1e-5;  // of rows without noise
+    constexpr double kLeastDeviation = 1e-4, kLeastLevel = 1e-5;  // lower limits, for rows without noise
     Tensor unit = at::empty({2}, at::kDouble);
     for (const auto i : {H_, D_}) unit[i] = targets_[static_cast<std::size_t>(i)].unit;
     const Tensor error = (out.narrow(1, 0, 2) - targets.to(at::kDouble)) * unit;
@@ -92,7 +93,7 @@ class Swing final : public Network {
       12.5;  ///< approximate length of the window, for the initial weights [s]
 
   struct Solution {
-    Tensor H, D, deviation_H, deviation_D;  ///< [row]; standard deviations by the weights
+    Tensor H, D, deviation_H, deviation_D;  ///< one value per row
   };
 
   [[nodiscard]] Solution solve(const Tensor& v, const Tensor& level) const {
@@ -102,7 +103,7 @@ class Swing final : public Network {
     const Tensor by_D = share * term(3) + (1 - share) * term(1);
     const Tensor by_H = -2 * (derivative * term(4) + (1 - derivative) * term(2));
     const Tensor y = term(0);
-    // The third column takes the error of P0, which is the same in all rows of a record.
+    // The third column is that of the error of P0, which is the same for all test functions of a record.
     const Tensor X = at::stack({by_H, by_D, term(5)}, 2);
     const Tensor variance = level.square(), zero = at::zeros_like(level);
     const double mean_H = mean(H_), mean_D = mean(D_);
@@ -133,7 +134,7 @@ class Swing final : public Network {
     return {H, D, deviation(0), deviation(1)};
   }
   static constexpr double kLowestEstimate = 0.1,
-                          kHighestEstimate = 2;  ///< limits of the estimates, relative to the box's mean
+                          kHighestEstimate = 2;  ///< limits of the estimates, relative to the targets' mean
 
   static Tensor exponential(const Tensor& t) { return at::exp(t.to(at::kDouble)); }
   [[nodiscard]] double mean(std::int64_t at) const { return targets_[static_cast<std::size_t>(at)].mean; }
@@ -141,11 +142,11 @@ class Swing final : public Network {
   std::int64_t functions_;
   std::vector<Target> targets_;
   std::int64_t H_ = -1, D_ = -1;
-  Tensor share_, derivative_share_;     ///< share of the angle in both speed terms (logit)
-  Tensor power_, by_H_, by_D_;          ///< ln of the variance of each test function, by its three sources
-  Tensor bias_HH_, bias_HD_, bias_DD_;  ///< noise in the normal matrix
-  Tensor bias_H_, bias_D_;              ///< noise in the right-hand side
-  Tensor before_;                       ///< ln of the precision of P0
+  Tensor share_, derivative_share_;     ///< logit of the angle's weight in both speed terms
+  Tensor power_, by_H_, by_D_;          ///< ln of the three parts of a test function's variance
+  Tensor bias_HH_, bias_HD_, bias_DD_;  ///< bias of the normal matrix by noise
+  Tensor bias_H_, bias_D_;              ///< bias of the right-hand side by noise
+  Tensor before_;                       ///< ln of the precision of P0, relative to kSteadyCount
 };
 }  // namespace
 

@@ -12,7 +12,7 @@
 namespace swingbank::train::posterior {
 namespace {
 
-constexpr std::size_t kRankDraws = 199;  ///< posterior samples: a rank has 200 values, ten per bin
+constexpr std::size_t kRankDraws = 199;  ///< number of posterior samples: 200 possible ranks, ten per bin
 constexpr std::uint32_t kFactorStream = 0, kOwnStream = 1, kReferenceStream = 2;
 
 std::size_t bin_of(double probability) {
@@ -37,7 +37,7 @@ ParameterCoverage of_parameter(const Posteriors& posteriors, const Recalibration
   return c;
 }
 
-/// Draws one sample of a row's posterior, as positions in the box. `seed`: of the row.
+/// Draws one sample of a row's posterior, as positions in the box. `seed`: seed of the row.
 void draw(const Posteriors& posteriors, std::span<const Recalibration> recalibrations, std::size_t row,
           std::uint64_t seed, std::size_t sample, std::span<double> out) {
   const double* F = posteriors.factor.data() + row * posteriors.parameters * kFactors;
@@ -63,7 +63,8 @@ double square_distance(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-/// Returns the rank of the truth's distance from a random point among the samples' distances.
+/// Returns the rank of the true value's distance from a random reference point among the distances of the
+/// posterior samples.
 std::size_t tarp_rank(const Posteriors& posteriors, std::span<const Recalibration> recalibrations,
                       std::size_t row, std::span<const double> truth, std::uint64_t seed) {
   std::vector<double> reference(truth.size()), sample(truth.size());
@@ -110,7 +111,7 @@ double Coverage::mean(double ParameterCoverage::*of) const {
 }
 
 double quantile_of_score(const Mixture& posterior, const Recalibration& recalibration, double score) {
-  constexpr double kFarthest = 6.0;  // largest score; beyond it a probability is rounding
+  constexpr double kFarthest = 6.0;  // largest score; a tail probability beyond it is rounding error
   return place_of_logit(
       posterior.quantile_of_score(std::clamp(recalibration.wrong(score), -kFarthest, kFarthest)));
 }

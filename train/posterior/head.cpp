@@ -13,9 +13,9 @@ namespace {
 using at::Tensor;
 constexpr std::int64_t kUnits = 256;
 constexpr auto K = static_cast<std::int64_t>(kComponents), F = static_cast<std::int64_t>(kFactors);
-constexpr double kNarrowest = -9.0, kWidest = 2.0;  // logarithms of a component's deviation
-constexpr double kCertain = 1e-5;                   // least tail probability for a normal score
-constexpr double kBoxEdge = 0.005;  // least distance of an estimate from the box's ends [share of the box]
+constexpr double kNarrowest = -9.0, kWidest = 2.0;  // limits of the logarithm of a deviation
+constexpr double kCertain = 1e-5;                   // smallest tail probability of a normal score
+constexpr double kBoxEdge = 0.005;  // smallest distance of an estimate from the box's ends [box widths]
 
 Tensor constant(const std::vector<HeadParameter>& all, double HeadParameter::*what) {
   std::vector<float> values;
@@ -28,8 +28,8 @@ Tensor drawn(std::int64_t in, std::int64_t out) {
   return at::empty({in, out}, at::kFloat).uniform_(-bound, bound).requires_grad_(true);
 }
 
-/// Returns the initial posterior: components centred on the estimate, each about as wide as the box, without
-/// correlation.
+/// Returns the numbers of the initial posterior: components around the estimate, each about as wide as the
+/// box, without correlation.
 std::vector<float> first_posterior(std::size_t parameters) {
   std::vector<float> all;
   for (std::size_t p = 0; p < parameters; ++p) {
@@ -112,7 +112,7 @@ Tensor Head::forward(const Tensor& x, const networks::StepRows*) {
     const Tensor known = trained_.describe(x);
     read = at::cat({known, x.reshape({x.size(0), -1})}, 1);
     const std::int64_t outputs = known.size(1);
-    // The outputs are the last of the features.
+    // The network's outputs are the last of its features.
     const auto all = static_cast<std::int64_t>(trained_.parameters().back().numel());
     const Tensor output =
         known.narrow(1, outputs - all, all).index_select(1, at::tensor(l.outputs, at::kLong));
@@ -138,7 +138,8 @@ Tensor Head::loss(const Tensor& numbers, const Tensor& targets) const {
   const Tensor each = parts.log_weight - parts.log_deviation - 0.5 * z.square();
   const Tensor marginal =
       at::logsumexp(each, 2).sum(1) - 0.5 * std::log(constants::turn) * static_cast<double>(p);
-  // The copula is trained on the detached scores of the marginal distributions and does not influence these.
+  // The copula is trained on detached scores of the marginal distributions, so that it does not influence
+  // these.
   const Tensor below =
       (parts.log_weight.detach().exp() * 0.5 * at::erfc(z.detach() * -std::sqrt(0.5))).sum(2);
   const Tensor score = std::sqrt(2.0) * at::erfinv(2.0 * below.clamp(kCertain, 1.0 - kCertain) - 1.0);

@@ -1,6 +1,6 @@
 #pragma once
-// Posterior head: a small network on top of a trained one that outputs a row's posterior. It reads the
-// trained network's features and estimates and does not change that network.
+// Posterior head: a small network on top of a trained one, which outputs a row's posterior. Its inputs are
+// the row and the features and estimates of the trained network, which it does not change.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -15,7 +15,7 @@ class Tensor;
 
 namespace swingbank::train::posterior {
 
-/// A parameter that varies.
+/// Varying parameter.
 struct HeadParameter {
   std::size_t output = 0;           ///< index in the trained network's outputs
   double low = 0.0, high = 0.0;     ///< its sampling box [raw units]
@@ -31,14 +31,14 @@ class Head final : public networks::Network {
   /// Returns the numbers of the rows' posteriors: batch x belief_size().
   at::Tensor forward(const at::Tensor& x, const networks::StepRows* training) override;
   std::vector<at::Tensor> parameters() override;
-  /// Returns the mean negative log density of the truths per parameter, in logits of positions. `targets`:
-  /// batch x all outputs of the trained network, scaled.
+  /// Returns the mean negative log density of the true values per parameter, over the logits of their
+  /// positions. `targets`: batch x all outputs of the trained network, scaled.
   [[nodiscard]] at::Tensor loss(const at::Tensor& numbers, const at::Tensor& targets) const;
 
   [[nodiscard]] const std::vector<HeadParameter>& of() const;
   /// Converts the output of forward() to posteriors.
   [[nodiscard]] Posteriors posteriors(std::span<const float> numbers) const;
-  /// Returns the positions in the box of raw values (rows x all outputs): rows x of().
+  /// Returns the positions of raw values in the box, rows x of().size(). `raw`: rows x `outputs`.
   [[nodiscard]] std::vector<double> places(std::span<const double> raw, std::size_t outputs) const;
 
  private:

@@ -9,17 +9,17 @@
 namespace swingbank::train::posterior {
 
 inline constexpr std::size_t kComponents = 4;  ///< components of a mixture
-inline constexpr std::size_t kFactors = 4;     ///< rank of the copula's correlations
+inline constexpr std::size_t kFactors = 4;     ///< number of factors of the copula's correlation matrix
 
 struct Mixture {
   std::array<double, kComponents> weight{}, mean{}, deviation{};
   [[nodiscard]] double cdf(double x) const;
-  /// Returns the quantile for the probability of a standard normal number below `score`; relative accuracy
-  /// 1e-9.
+  /// Returns the quantile whose probability is that of a standard normal variable below `score`; relative
+  /// accuracy 1e-9.
   [[nodiscard]] double quantile_of_score(double score) const;
 };
 
-/// Posteriors of rows x parameters. The correlation matrix of a row's normal scores is F F^T + 1, scaled to a
+/// Posteriors of rows x parameters. The correlation matrix of a row's normal scores is F F^T + I, scaled to a
 /// unit diagonal.
 struct Posteriors {
   std::size_t rows = 0, parameters = 0;
@@ -30,8 +30,8 @@ struct Posteriors {
   }
 };
 
-/// Conversion between the position of a value in its box (0 to 1) and its logit. Positions at the ends are
-/// moved inside by 1e-5 of the box.
+/// Convert between the position of a value in its box (0 to 1) and its logit. Positions at the ends are moved
+/// inwards by 1e-5.
 double logit_of_place(double place);
 double place_of_logit(double logit);
 

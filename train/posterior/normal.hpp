@@ -1,5 +1,5 @@
 #pragma once
-// The standard normal distribution and its inverse.
+// Standard normal distribution: density, cumulative distribution and its inverse.
 #include <cmath>
 
 namespace swingbank::train::posterior {

@@ -20,7 +20,8 @@ const NodeScores& standard() {
   return scores;
 }
 
-/// Interpolates linearly; extrapolates with the slope across the outer three points.
+/// Interpolates linearly between the points (from, to). Extrapolates with the slope between the first and
+/// third outer point.
 double along(const NodeScores& from, const NodeScores& to, double x) {
   const auto slope = [&](std::size_t a, std::size_t b) { return (to[b] - to[a]) / (from[b] - from[a]); };
   if (x <= from.front()) return to.front() + (x - from.front()) * slope(0, 2);
@@ -35,7 +36,7 @@ Recalibration::Recalibration() : node_scores_(standard()) {}
 
 Recalibration Recalibration::fit(std::span<const double> scores) {
   constexpr std::size_t kMinRows = 20;
-  constexpr double kClosest = 1e-3;  // least distance of neighbouring points, so that the map has an inverse
+  constexpr double kClosest = 1e-3;  // smallest distance of nodes, so that the map has an inverse
   Recalibration r;
   if (scores.size() < kMinRows) return r;
   std::vector<double> sorted(scores.begin(), scores.end());

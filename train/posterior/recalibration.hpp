@@ -1,6 +1,6 @@
 #pragma once
-// Recalibration of normal scores by rows that did not train: a monotone map, linear between quantiles, that
-// makes the scores of these rows standard normal (Kuleshov, Fenner and Ermon 2018).
+// Recalibration of normal scores by rows that were not used in training. The map is monotone and piecewise
+// linear, and makes the scores of these rows standard normal (Kuleshov, Fenner and Ermon 2018).
 #include <array>
 #include <span>
 
@@ -13,7 +13,8 @@ inline constexpr std::array<double, 11> kNodeProbabilities = {0.01,  0.05, 0.125
 class Recalibration {
  public:
   Recalibration();  ///< the identity
-  /// Fits the map. `scores`: of the truths under the posteriors; fewer than 20 give the identity.
+  /// Fits the map. `scores`: normal scores of the true values under the posteriors. With fewer than 20
+  /// scores, returns the identity.
   static Recalibration fit(std::span<const double> scores);
   /// `node_scores`: scores at kNodeProbabilities.
   explicit Recalibration(const std::array<double, kNodeProbabilities.size()>& node_scores)
@@ -21,10 +22,11 @@ class Recalibration {
   [[nodiscard]] const std::array<double, kNodeProbabilities.size()>& node_scores() const {
     return node_scores_;
   }
+  /// Returns the recalibrated score.
   [[nodiscard]] double right(double score) const;
   /// Inverse of right().
   [[nodiscard]] double wrong(double right) const;
-  /// Interpolates two maps: `share` of the second.
+  /// Returns the map (1 - share) a + share b.
   static Recalibration between(const Recalibration& a, const Recalibration& b, double share);
 
  private:

@@ -8,11 +8,11 @@
 namespace swingbank::train::posterior {
 namespace {
 constexpr std::size_t kPlaces = 512;    ///< number of grid points
-constexpr double kFloorDensity = 1e-9;  ///< no single record excludes a position completely
+constexpr double kFloorDensity = 1e-9;  ///< lower limit, so that no single record excludes a position
 
 double place_at(std::size_t i) { return (static_cast<double>(i) + 0.5) / kPlaces; }
 
-/// Adds the logarithm of the positions' density on the grid.
+/// Adds the logarithm of the posterior density of the positions, on the grid.
 void add_log_density(const Mixture& m, std::vector<double>& log_density) {
   for (std::size_t i = 0; i < kPlaces; ++i) {
     const double u = place_at(i), x = logit_of_place(u);

@@ -9,8 +9,8 @@
 
 namespace swingbank::train::posterior {
 
-/// Returns the mean position in the box of each parameter under the product of the rows' posteriors with a
-/// prior uniform in the box. Correlations between parameters are ignored. `rows`: at least one.
+/// Returns each parameter's mean position in the box under the product of the rows' posteriors. The prior is
+/// uniform in the box. Correlations between parameters are ignored. `rows`: at least one.
 std::vector<double> together(const Posteriors& posteriors, std::span<const std::size_t> rows);
 
 }  // namespace swingbank::train::posterior

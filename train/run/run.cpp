@@ -32,8 +32,8 @@ std::string differing(const json& there, const json& here) {
   return fmt::format("{}", fmt::join(keys, ", "));
 }
 
-/// Returns true if the result already exists. Throws if it is that of another run. A finished result may come
-/// from another processor, which is reported, but not from other software.
+/// Returns whether the result already exists. Throws InputError if it belongs to another run or other
+/// software. A result from another processor is accepted.
 bool already_done(const std::filesystem::path& file, const json& run) {
   if (!std::filesystem::exists(file)) return false;
   const json parsed = json::parse(read_text(file), nullptr, false);
@@ -48,7 +48,7 @@ bool already_done(const std::filesystem::path& file, const json& run) {
                     "remove it, choose another --out, or give --any-maker if only the software differs"});
 }
 
-/// Computes the score. `predicted`: `rows` x parameters [raw units].
+/// Computes the score. `predicted`: rows x parameters [raw units].
 loop::Score judge(const std::vector<double>& predicted, const PreparedRun& run,
                   std::span<const std::uint64_t> rows) {
   const data::Labels& labels = run.stream.labels();
@@ -60,7 +60,7 @@ loop::Score judge(const std::vector<double>& predicted, const PreparedRun& run,
                       d.parameter_high});
 }
 
-/// Estimates that a network corrects, for all rows; empty if it corrects none.
+/// Estimates of all rows that a network corrects; empty if it corrects none.
 struct Guesses {
   std::vector<float> raw,
       scaled;  ///< raw units; in standard deviations about the mean of the training targets
@@ -105,7 +105,7 @@ std::string scored(const loop::Score& s, double seconds) {
                      loop::duration(seconds));
 }
 
-/// Runs a method without training. No checkpoints: such a run takes minutes at most.
+/// Runs a method without training. It writes no checkpoints, because it takes minutes at most.
 RunOutcome run_direct(const PreparedRun& run, const std::filesystem::path& result) {
   const RunRequest& r = run.request;
   const auto& rows = run.split.test;
@@ -177,8 +177,8 @@ class NetworkRun {
         quiet_(run.request.quiet || ranks.rank() != 0),
         progress_(name_, epochs() * run.split.train.size(), quiet_) {}
 
-  /// Returns the trained network; none if the training was stopped and must be submitted again. Collective;
-  /// only rank 0 may use the network.
+  /// Returns the trained network; none if the training was stopped and the command must be submitted again.
+  /// Collective; only rank 0 may use the network.
   std::optional<Trained> train() {
     const RunRequest& r = run_.request;
     Trained trained;
@@ -201,7 +201,7 @@ class NetworkRun {
           fmt::format("saved to {}; submit the same command again to continue", checkpoint_.string()));
       return std::nullopt;
     }
-    // A network that corrects estimates is not saved: it cannot be used without them.
+    // A network that corrects estimates is not saved, because it cannot be used without them.
     if (ranks_.rank() == 0 && r.save_network && !r.shuffle_labels && r.train_share == 1 && known_.none())
       save_network(file(), run_, trained);
     return trained;
@@ -230,7 +230,8 @@ class NetworkRun {
   [[nodiscard]] std::filesystem::path file() const {
     return network_file(run_.request.out / (name_ + ".json"));
   }
-  /// Loads the network that an earlier run of another noise level trained. Returns false if there is none.
+  /// Loads the network that an earlier run at another noise level has trained. Returns false if there is
+  /// none.
   bool load(Trained& trained) {
     if (!std::filesystem::exists(file())) return false;
     SavedNetwork saved = SavedNetwork::load(file());
@@ -284,7 +285,7 @@ class NetworkRun {
                     ranks_.size() > 1 ? fmt::format("{} ranks of {}", ranks_.size(), runtime.sentence())
                                       : runtime.sentence()));
   }
-  /// Returns raw values clamped to the sampling box, which contains every truth.
+  /// Returns the estimates in raw units, clamped to the sampling box, which contains every true value.
   [[nodiscard]] std::vector<double> estimates(const Trained& trained, std::span<const std::uint64_t> rows) {
     const auto out = loop::predict(*trained.network, run_.stream, trained.features, rows, known_.scaled);
     const data::TargetScale& scale = run_.scale;
@@ -308,13 +309,13 @@ class NetworkRun {
   loop::TrainingProgress progress_;
 };
 
-/// Locks the run on rank 0. Returns false if its result exists already.
+/// Locks the run; called on rank 0. Returns false if the result already exists.
 bool begin(const PreparedRun& run, const std::filesystem::path& result, std::optional<RunLock>& lock) {
   if (already_done(result, run.identity)) return false;
   const auto locks = run.request.out / "checkpoints";
   make_folder(run.request.out);
   make_folder(locks);
-  // Runs of other noise levels wait for their common network.
+  // Runs that differ only in the noise level wait for the network that they share.
   const std::chrono::milliseconds patience =
       run.recipe.noise_levels ? std::chrono::hours(12) : run.request.patience;
   lock.emplace(

@@ -21,39 +21,40 @@ struct RunRequest {
   loop::Experiment experiment;
   std::string preset, network;
   std::optional<std::int32_t> generator;  ///< left-out generator; none: split 60/20/20
-  std::optional<std::int32_t> judged;     ///< generator tested instead, also left out
+  std::optional<std::int32_t> judged;     ///< generator tested instead of `generator`; also left out
   std::uint64_t seed = 1;
-  std::optional<std::size_t> epochs;  ///< overrides the preset's
-  double noise = 0;  ///< level of measurement noise; the stream must have been opened with it
-  std::optional<std::size_t> test_rows;  ///< approximate number, evenly spaced; none: all
-  double train_share = 1.0;              ///< of the training rows
+  std::optional<std::size_t> epochs;     ///< overrides the preset's value
+  double noise = 0;                      ///< noise level; the stream must have the same
+  std::optional<std::size_t> test_rows;  ///< approximate number of rows, evenly spaced; none: all
+  double train_share = 1.0;              ///< share of the training rows
   bool shuffle_labels = false;
   bool any_maker = false;    ///< accept results of other software or kernels
-  bool save_network = true;  ///< beside the result (not for a control run)
+  bool save_network = true;  ///< write the network beside the result, except for a control run
   std::filesystem::path out;
   runtime::Runtime runtime;
   bool quiet = false;
-  bool watch = false;                        ///< draws the learning curve on the terminal
-  std::chrono::milliseconds patience{5000};  ///< waiting time for another process at the same run
+  bool watch = false;                        ///< draw the learning curve on the terminal
+  std::chrono::milliseconds patience{5000};  ///< waiting time if another process works on this run
   std::function<bool()> stop = {};           ///< polled before each batch; empty: stop_asked()
-  const mpi::items::Ranks* ranks = nullptr;  ///< that train the network together; null: this process alone
+  const mpi::items::Ranks* ranks = nullptr;  ///< ranks that train together; null: this process alone
 };
 
 enum class RunOutcome { done, already_done, stopped };
 
 /// Trains, scores and writes the JSON of train/run/README.md. Continues from a checkpoint of the same run.
-/// Throws InputError if the output folder holds a result of another run under the same name, or of other
-/// software, or a checkpoint of other software or kernels, or if another process works on this run (RunLock).
-/// Collective over the ranks, which have the same request and dataset; rank 0 alone scores and writes files.
+/// Throws InputError if a result with this name belongs to another run or other software, if the checkpoint
+/// belongs to another run, other software or kernels, or if another process works on this run (RunLock).
+/// Collective over the ranks, which have the same request and dataset; only rank 0 scores and writes files.
 RunOutcome run(const data::ShardStream& stream, const RunRequest& request);
 
 /// Returns the targets of all rows in scaled units. With `shuffled`, the labels of training and validation
-/// rows are permuted; those of other rows are unchanged.
+/// rows are permuted; the other labels are unchanged.
 std::vector<float> scaled_targets(const data::Labels& labels, const data::TargetScale& scale,
                                   const data::RowSplit& split, bool shuffled, std::uint64_t seed);
-/// Returns "V-cnn-quick-seed1-gen30".
+/// Returns the name of the result, such as "V-cnn-quick-seed1-gen30".
 std::string run_name(const RunRequest& request);
-/// Returns the name without the test noise level if the network serves all levels.
+/// Returns the name of the training: the name of the result, without the noise level if the network serves
+/// all levels.
 std::string training_name(const RunRequest& request);
 
 }  // namespace swingbank::train::run

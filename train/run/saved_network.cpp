@@ -41,8 +41,8 @@ double largest_input(const data::ShardStream& stream, const data::Features& feat
   return largest;
 }
 
-/// Returns the parameters with bias and spread on the test rows, which are not used in training. In a fold
-/// they are those of the generator left out.
+/// Returns the parameters with bias and RMS error on the test rows, which are not used in training. In a
+/// fold, these are the rows of the generator left out.
 json judged_parameters(const PreparedRun& run, const Trained& trained) {
   const mpi::store::Dataset& d = run.stream.dataset();
   const data::Labels& labels = run.stream.labels();
@@ -190,7 +190,7 @@ std::vector<networks::Target> targets_of(const NetworkInfo& info, const data::Ta
   return all;
 }
 
-/// Returns the file itself, or the only one in a folder.
+/// Returns the file itself, or the only network file of a folder.
 fs::path find_file(const fs::path& path) {
   if (!fs::is_directory(path)) {
     if (fs::exists(path)) return path;

@@ -23,8 +23,8 @@ Sgemm sgemm() {
   return found;
 }
 
-/// Limits OpenMP to one thread during its lifetime: threads once started would be missing in a process forked
-/// later.
+/// Guard that limits OpenMP to one thread during its lifetime. Threads that were already started would be
+/// missing in a process forked later.
 class OneThread {
  public:
   OneThread() { omp_set_num_threads(1); }
@@ -90,7 +90,8 @@ struct Pack {
   typedef float Type
       __attribute__((vector_size(4 * Lanes)));  // GCC drops the attribute of a dependent `using`
 };
-/// Twelve sums hide the latency of a multiply-add and, with factor and addend, fit into sixteen registers.
+/// Twelve sums hide the latency of a multiply-add. Together with factor and addend they fit into sixteen
+/// registers.
 template <int Lanes>
 [[gnu::always_inline]] inline void add_up() {
   using P = typename Pack<Lanes>::Type;
@@ -116,7 +117,7 @@ BlasRate measure() {
   std::vector<float> c(a.size());
   const float one = 1.0f, zero = 0.0f;
   BlasRate best;
-  for (int go = 0; go < 6; ++go) {  // alternating, so that both run under the same conditions
+  for (int go = 0; go < 6; ++go) {  // the measurements alternate, so that both have the same conditions
     best.multiply_adds = std::max(best.multiply_adds, 2e-9 * lanes * kSums * kTimes / seconds(adds));
     if (!sgemm()) continue;
     const double taken = seconds(
@@ -134,8 +135,8 @@ std::string BlasRate::sentence() const {
 }
 
 std::string BlasRate::warning() const {
-  // Kernels as wide as the processor reach 60 % and more; SSE kernels reach 17 % on AVX-512:
-  // docs/reference/performance.md.
+  // Kernels for the processor's widest instructions reach 60 % and more. SSE kernels reach 17 % on a
+  // processor with AVX-512 (docs/reference/performance.md).
   constexpr double kLeastOfPeak = 0.4;
   if (share() >= kLeastOfPeak) return "";
   return Problem{

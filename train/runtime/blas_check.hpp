@@ -5,17 +5,18 @@
 namespace swingbank::train::runtime {
 struct BlasFound;
 
-/// Single-precision rates on one core [GFLOP/s], best of several runs, by this thread's processor time.
+/// Single-precision rates on one core [GFLOP/s]: the best of several runs, relative to this thread's
+/// processor time.
 struct BlasRate {
-  double product = 0.0;        ///< 512 x 512 times 512 x 512 by the library; 0: no library
-  double multiply_adds = 0.0;  ///< independent multiply-adds at the widest instructions: upper bound
+  double product = 0.0;        ///< product of 512 x 512 matrices by the library; 0: no library
+  double multiply_adds = 0.0;  ///< multiply-adds with the widest instructions: upper bound
   [[nodiscard]] double share() const { return product / multiply_adds; }
   [[nodiscard]] std::string sentence() const;
   /// Returns a warning if the library reaches less than 40 % of the multiply-add rate, else an empty string.
   [[nodiscard]] std::string warning() const;
 };
-/// Returns the rates. Measured once per process by one thread without starting others, so that the process
-/// may fork later.
+/// Returns the rates. They are measured once per process, by a single thread, so that the process may fork
+/// later.
 const BlasRate& blas_rate();
 
 /// Compares products of odd sizes, also of transposed matrices, with a plain loop in double precision. Throws

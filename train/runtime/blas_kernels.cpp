@@ -22,9 +22,9 @@ namespace {
 
 constexpr const char* kAsked = "OPENBLAS_CORETYPE";
 constexpr const char* kAlone =
-    "SWINGBANK_OPENBLAS_ALONE";  // this program's note to itself across the restart
+    "SWINGBANK_OPENBLAS_ALONE";  // passes OpenBLAS's own choice to the restarted program
 
-/// In order of speed.
+/// Instruction sets in order of speed.
 enum class Width { sse, avx, avx2, avx512 };
 constexpr std::array<std::string_view, 4> kWidthNames = {"SSE", "AVX", "AVX2", "AVX-512"};
 
@@ -33,7 +33,7 @@ struct Core {
   Width width;
   bool fma4 = false;
 };
-/// Names of OpenBLAS 0.3's x86-64 kernels (driver/others/dynamic.c); those of SSE are listed together.
+/// Names of OpenBLAS 0.3's x86-64 kernels (driver/others/dynamic.c). kNarrow lists the SSE kernels.
 constexpr std::array<Core, 10> kWide = {{{"Sandybridge", Width::avx},
                                          {"Bulldozer", Width::avx, true},
                                          {"Piledriver", Width::avx, true},
@@ -48,7 +48,8 @@ constexpr std::array<std::string_view, 16> kNarrow = {
     "Katmai",     "Coppermine", "Northwood", "Prescott", "Banias",       "Atom",      "Core2",  "Penryn",
     "Dunnington", "Nehalem",    "Athlon",    "Opteron",  "Opteron_SSE3", "Barcelona", "Bobcat", "Nano"};
 
-/// Returns nullptr for a name of a later version; that library's own choice is kept and measured.
+/// Returns the kernels of this name; nullptr for a name of a later version. That library's own choice is then
+/// kept and measured.
 const Core* core_of(std::string_view name) {
   static constexpr Core narrow{"", Width::sse};
   for (const Core& core : kWide)
@@ -73,7 +74,7 @@ std::string environment(const char* name) {
 /// Restarts the program. Returns only on failure, with the reason.
 std::string restart(const std::string& asked, const std::string& alone, char** argv) {
   std::error_code error;
-  // The path itself and not /proc/self/exe, which `ps` would show as the name.
+  // The path itself, because `ps` would show /proc/self/exe as the program's name.
   const auto program = own_executable(error);
   setenv(kAsked, asked.c_str(), 1);
   setenv(kAlone, alone.c_str(), 1);
@@ -127,7 +128,7 @@ BlasChoice choose_blas_kernels(const Processor& processor, const BlasFound& foun
          fmt::format("they need instructions that this processor does not have; it has {}", name_of(best)),
          fmt::format("unset {}", kAsked)});
   if (core->width == best) return {};
-  // Every AVX processor uses the Sandybridge kernels, as Debian's OpenBLAS does for all of them.
+  // For every processor with only AVX, the Sandybridge kernels are used, as in Debian's OpenBLAS.
   const std::string restart_with = best == Width::avx512 ? "SKYLAKEX"
                                    : best == Width::avx2 ? "HASWELL"
                                                          : "SANDYBRIDGE";

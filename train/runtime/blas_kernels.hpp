@@ -1,11 +1,12 @@
 #pragma once
-// Selection of the BLAS library's kernels. OpenBLAS selects by a list of processor models. A processor newer
-// than the list gets kernels of 2004, which in Debian 12's version have a quarter of the speed.
+// Selection of the BLAS library's kernels. OpenBLAS selects its kernels by a list of processor models. A
+// processor newer than the list gets kernels of 2004, which have a quarter of the speed in Debian 12's
+// version.
 #include <string>
 
 namespace swingbank::train::runtime {
 
-/// Instruction sets that kernels depend on, as processor and operating system provide them.
+/// Instruction sets that processor and operating system support, as far as kernels depend on them.
 struct Processor {
   bool avx = false;
   bool avx2 = false;    ///< with FMA
@@ -29,16 +30,18 @@ struct BlasChoice {
 /// warning. Throws InputError if the requested kernels need instructions that the processor lacks.
 BlasChoice choose_blas_kernels(const Processor& processor, const BlasFound& found);
 
-/// Returns library, version and kernels as text, with the reason if the library did not choose them itself.
+/// Returns library, version and kernels as text. If the library did not choose the kernels itself, the text
+/// contains the reason.
 std::string blas_name(const BlasFound& found);
 
-/// Returns the instructions of LibTorch's own loops ("AVX2"), which it selects by features and not by model.
+/// Returns the instruction set of LibTorch's own loops ("AVX2"). LibTorch selects it by processor features,
+/// not by model.
 std::string tensor_instructions();
 
-/// Selects the best kernels; call before any thread starts. OpenBLAS chooses while the program is loaded. If
-/// that choice is poor, the program restarts itself with the right choice in its environment. Then it checks
-/// and measures the library (blas_check.hpp) and prints one line and any warnings to standard error. Throws
-/// InputError if the library multiplies wrongly or cannot run here.
+/// Selects the best kernels. Call it before any thread starts. OpenBLAS chooses kernels while the program is
+/// loaded. If faster ones are available, the program restarts itself with their name in the environment. Then
+/// it checks and measures the library (blas_check.hpp), and prints one line and any warnings to standard
+/// error. Throws InputError if the library's products are wrong or its kernels cannot run on this processor.
 void use_best_blas_kernels(char** argv);
 
 }  // namespace swingbank::train::runtime

@@ -12,7 +12,7 @@ namespace swingbank::train::runtime {
 namespace {
 
 std::atomic<std::int64_t> counted{0};
-thread_local int depth = 0;  // a batched product may consist of single ones, which LibTorch reports too
+thread_local int depth = 0;  // a batched product may contain single ones, which LibTorch reports too
 
 struct Operator {
   std::string_view name;

@@ -1,11 +1,11 @@
 #pragma once
-// Count of matrix-product operations in a training step, to relate a processor's product rate to the step's
-// time.
+// Count of the operations of a training step's matrix products, for comparison of the step's duration with
+// the processor's rate.
 
 namespace swingbank::train::runtime {
 
-/// Counts the operations of LibTorch's matrix products during its lifetime, including those of the backward
-/// pass. At most one instance per process.
+/// Counter of the operations of LibTorch's matrix products during its lifetime, including the backward pass.
+/// At most one instance per process.
 class ProductCount {
  public:
   ProductCount();

@@ -7,7 +7,7 @@
 
 namespace swingbank::train::loop {
 
-/// Writes a checkpoint. header: position and identity of the run; arrays: weights, moments and best weights
+/// Writes a checkpoint. header: position and identity of the run; arrays: weights, moments and best weights,
 /// in a fixed order.
 void write_checkpoint(const std::filesystem::path& file, const nlohmann::json& header,
                       const std::vector<std::span<const float>>& arrays);

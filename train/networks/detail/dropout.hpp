@@ -6,8 +6,9 @@
 
 namespace swingbank::train::networks {
 
-/// Returns h, rows x units, with each unit set to zero with probability `rate` and the others divided by 1 -
-/// rate. `layer`: number of the layer, so that no two have the same mask. `rows` null: h.
+/// Returns h, rows x units, after dropout: each unit is zero with probability `rate`, otherwise multiplied
+/// by 1/(1-rate). `layer`: number of the layer, so that no two layers have the same mask. Returns h unchanged
+/// if `rows` is null.
 at::Tensor dropout(const at::Tensor& h, double rate, const StepRows* rows, std::uint64_t layer);
 
 }  // namespace swingbank::train::networks

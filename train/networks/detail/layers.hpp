@@ -21,7 +21,7 @@ struct Dense {
   [[nodiscard]] at::Tensor operator()(const at::Tensor& x) const { return at::addmm(bias, x, weight); }
 };
 
-/// Returns the thesis's ReLU output layer, with the bias at the mean of the targets.
+/// Returns the thesis's ReLU output layer. `start`: initial bias, the mean of the targets.
 inline Dense output_layer(std::int64_t in, const std::vector<float>& start) {
   Dense layer(in, static_cast<std::int64_t>(start.size()));
   layer.bias = at::tensor(start, at::kFloat).requires_grad_(true);

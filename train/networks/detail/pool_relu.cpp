@@ -10,7 +10,7 @@ using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
 namespace {
-constexpr std::uint8_t kCut = 255;  // mark of a ReLU at zero: no gradient
+constexpr std::uint8_t kCut = 255;  // marks an output that ReLU sets to zero: no gradient
 
 /// Pools one row of channels: the maximum of `pool` rows that are `stride` floats apart.
 void pool_row(const float* x, std::int64_t stride, std::int64_t pool, const float* bias,

@@ -1,5 +1,5 @@
 #pragma once
-// Common part of LSTM and GRU: 512 units over the series, and the last state into one ReLU output per
+// Common part of LSTM and GRU: a recurrent layer of 512 units, whose last state feeds one ReLU output per
 // parameter.
 #include <ATen/ATen.h>
 
@@ -21,11 +21,11 @@ inline std::vector<at::Tensor> recurrent_weights(std::int64_t inputs, std::int64
           uniform_weight({rows}, kRecurrentUnits)};
 }
 
-/// A recurrent layer with its output layer.
+/// Recurrent layer with its output layer.
 class Recurrent final : public Network {
  public:
-  /// Returns the last hidden state, batch x units, of a series, samples x batch x channels. `zero`: initial
-  /// state.
+  /// Function that returns the last hidden state (batch x units) of a series (samples x batch x channels).
+  /// `zero`: initial state.
   using LastState = at::Tensor (*)(const at::Tensor& series, const at::Tensor& zero,
                                    const std::vector<at::Tensor>& weights, bool training);
   Recurrent(const NetworkShape& s, std::int64_t gates, LastState last_state)

@@ -12,7 +12,8 @@ using at::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::tensor_list;
 
-/// Spectra are stored in planes: all real parts, then all imaginary parts. F frequencies, L samples, K taps.
+/// Transform matrices for F frequencies, L samples and K taps. Spectra are stored in two planes: all real
+/// parts, then all imaginary parts.
 struct SpectralMatrices {
   Tensor series;   ///< 2F x L: samples to spectrum
   Tensor taps;     ///< 2F x K: taps to spectrum
@@ -21,16 +22,17 @@ struct SpectralMatrices {
 
 namespace {
 
-/// Returns 2F x n: cosines over minus sines of 2 pi f (first + i) / period, weighted per frequency.
+/// Returns a matrix, 2F x n: the cosines of 2 pi f (first + i) / period, and below them the negative sines.
+/// If `folded`, each frequency is weighted for the inverse real transform.
 Tensor waves(std::int64_t period, std::int64_t first, std::int64_t n, bool folded) {
   const std::int64_t f_count = period / 2 + 1;
   Tensor m = at::empty({2 * f_count, n}, at::kFloat);
   float* out = m.data_ptr<float>();
   for (std::int64_t f = 0; f < f_count; ++f) {
-    const bool alone = f == 0 || 2 * f == period;  // without a mirrored partner in the real transform
+    const bool alone = f == 0 || 2 * f == period;  // has no conjugate partner in the real transform
     const double weight = folded ? (alone ? 1.0 : 2.0) / static_cast<double>(period) : 1.0;
     for (std::int64_t i = 0; i < n; ++i) {
-      const std::int64_t turn = ((f * (first + i)) % period + period) % period;  // exact before the cosine
+      const std::int64_t turn = ((f * (first + i)) % period + period) % period;  // exact: integers
       const double angle = constants::turn * static_cast<double>(turn) / static_cast<double>(period);
       out[f * n + i] = static_cast<float>(weight * std::cos(angle));
       out[(f_count + f) * n + i] = static_cast<float>(-weight * std::sin(angle));
@@ -44,7 +46,7 @@ Tensor transform(const Tensor& matrix, const Tensor& t) {
   const auto a = t.size(1), b = t.size(2);
   return at::mm(matrix, t.reshape({t.size(0), a * b})).view({2, matrix.size(0) / 2, a, b});
 }
-/// Applies the transposed map: planes back to n x a x b.
+/// Applies a matrix to planes 2 x F x a x b; returns n x a x b.
 Tensor transform_back(const Tensor& matrix, const Tensor& planes) {
   const auto a = planes.size(2), b = planes.size(3);
   return at::mm(matrix, planes.view({2 * planes.size(1), a * b})).view({matrix.size(0), a, b});
@@ -108,7 +110,8 @@ struct SpectralConv : torch::autograd::Function<SpectralConv> {
 SpectralPlan::SpectralPlan(std::int64_t length, std::int64_t kernel) : length_(length), kernel_(kernel) {
   TORCH_CHECK(length >= 1 && kernel >= 1, "spectral_conv: length and kernel must be at least 1");
   const std::int64_t left = (kernel - 1) / 2, right = kernel - 1 - left;
-  // Output t needs lags t - left ... t + right. A lag beyond the series may wrap only onto zeros.
+  // Output t needs the samples t - left ... t + right. The period is so long that indices beyond the series
+  // wrap only to zeros.
   period_ = length + std::max(left, right);
   auto m = std::make_shared<SpectralMatrices>();
   m->series = waves(period_, 0, length, false);

@@ -16,7 +16,8 @@ struct SpectralMatrices;  // the transform matrices, in single precision
 /// Transform matrices for one series length and kernel length; computed once per layer.
 class SpectralPlan {
  public:
-  /// length, kernel [samples] >= 1. The period is the least one without aliasing in the 'same' outputs.
+  /// length, kernel [samples] >= 1. The period is the smallest one that causes no aliasing in the 'same'
+  /// outputs.
   SpectralPlan(std::int64_t length, std::int64_t kernel);
   ~SpectralPlan();
   SpectralPlan(SpectralPlan&&) noexcept;
@@ -34,8 +35,8 @@ class SpectralPlan {
 };
 
 /// Returns the convolution, length x batch x out, without bias. x: length x batch x in; weight: kernel x in x
-/// out (weight[k][i][o] is Conv1d's weight[o][i][k]). Differentiable in both. As in Conv1d, an even kernel
-/// has its extra zero on the right.
+/// out (weight[k][i][o] is Conv1d's weight[o][i][k]). Differentiable in both. As in Conv1d, the extra zero of
+/// an even kernel is on the right.
 at::Tensor spectral_conv(const at::Tensor& x, const at::Tensor& weight, const SpectralPlan& plan);
 
 }  // namespace swingbank::train::networks

@@ -13,7 +13,7 @@ namespace swingbank::train::run {
 namespace {
 using nlohmann::json;
 
-constexpr std::uint64_t kPosteriorDraws = 1u << 20;  // offset of the head's noise draws from the network's
+constexpr std::uint64_t kPosteriorDraws = 1u << 20;  // first noise draw of the head, after the network's
 constexpr std::uint64_t kCalibrationDraw = 2;
 constexpr std::size_t kCalibrationRows = 3000, kOtherRows = 1000, kLevelsAboveZero = 5;
 
@@ -51,7 +51,7 @@ posterior::Posteriors posteriors_of(const Trained& trained, const PreparedRun& r
   return head.posteriors(loop::predict(head, run.stream, trained.features, rows, {}, noise));
 }
 
-/// Returns the rows of generators that did not train; if none was set aside, the validation rows.
+/// Returns the rows of the generators set aside; if none was set aside, the validation rows.
 const std::vector<std::uint64_t>& calibration_rows(const data::RowSplit& split) {
   return split.calibration.empty() ? split.validation : split.calibration;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Trained network with its posterior: training of the head, recalibration at each noise level on rows that
-// did not train, and calibration checks on the test rows.
+// Posterior of a trained network: training of the head, recalibration at each noise level with rows that were
+// not used in training, and calibration checks on the test rows.
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -20,7 +20,7 @@ struct LevelMaps {
   std::vector<posterior::Recalibration> maps;
 };
 
-/// Returns the maps at a level, interpolated between its neighbours.
+/// Returns the maps at a noise level, interpolated between the neighbouring levels.
 std::vector<posterior::Recalibration> maps_at(const std::vector<LevelMaps>& levels, double level);
 
 struct Posterior {
@@ -39,11 +39,11 @@ struct Trained {
 /// Creates an untrained head. Throws InputError if the network provides no features.
 std::unique_ptr<posterior::Head> make_head(networks::Network& network, const mpi::store::Dataset& dataset,
                                            const data::TargetScale& scale, std::size_t inputs);
-/// Trains and recalibrates the head. Returns false if it was stopped, after a checkpoint.
+/// Trains and recalibrates the head. Returns false if the training was stopped; a checkpoint is then saved.
 bool train_posterior(Trained& trained, const PreparedRun& run, loop::LoopSettings settings,
                      std::span<const float> targets, loop::TrainingProgress& progress);
-/// Returns coverage, ranks and widths for the result file, on the test rows and on the same generator's rows
-/// that never train.
+/// Returns coverage, ranks and widths for the result file: on the test rows, and on the rows of the left-out
+/// generator in the training dataset, which are never used in training.
 nlohmann::json judge_posterior(const PreparedRun& run, const Trained& trained);
 
 /// Returns a function that estimates a plant's parameters [raw units] from several test rows by the product

@@ -17,7 +17,7 @@ void thin(std::vector<std::uint64_t>& rows, std::size_t wanted) {
   rows.resize(kept);
 }
 
-/// Throws if a method needs complete records but the dataset is not on disk.
+/// Throws InputError if a method needs complete records but the dataset is not on disk.
 void require_records(const data::ShardStream& stream, const RunRequest& r) {
   const bool reads =
       direct::is_method(r.network) || !r.experiment.training(r.preset, r.network).corrects.empty();

@@ -1,11 +1,11 @@
 #pragma once
-// A run before any work, as values: identity, split and scale of the targets.
+// Preparation of a run: identity, split of the rows and scale of the targets.
 #include "base/json.hpp"
 #include "train/run/run.hpp"
 
 namespace swingbank::train::run {
 
-/// What a request determines before any work.
+/// Values of a run that are known before training or estimation.
 struct PreparedRun {
   const data::ShardStream& stream;
   const RunRequest& request;
@@ -14,7 +14,7 @@ struct PreparedRun {
   /// Identity of the training. A network trained at many noise levels serves the runs of all levels.
   nlohmann::json training_identity;
   data::RowSplit split;
-  data::TargetScale scale;  ///< of the targets
+  data::TargetScale scale;  ///< scale of the targets
 };
 
 /// Splits the rows and fits the scale of the targets. Throws InputError if a method needs complete records

@@ -10,14 +10,14 @@ namespace swingbank::train::run {
 std::string dataset_name(const mpi::store::Dataset& dataset);
 
 /// Returns the identity of a run: data, recipe, seed, and, unless RunRequest::any_maker is set, software and
-/// kernels. Checkpoints and results with another identity do not belong to the run.
+/// kernels. A checkpoint or result with another identity does not belong to the run.
 nlohmann::json identity(const data::ShardStream& stream, const RunRequest& request);
 
 struct RunParts {
   const data::Features* features;  ///< nullptr: no training
   const loop::LoopReport& report;
   const loop::Score& score;
-  std::optional<double> seen_mse = {};  ///< of the validation rows [raw units^2]
+  std::optional<double> seen_mse = {};  ///< MSE of the validation rows [raw units^2]
   nlohmann::json posterior = {};        ///< null: no posterior
   nlohmann::json several = {};          ///< null: no such plants
 };
