@@ -1,5 +1,5 @@
 #pragma once
-// Options shared by compare, calibrate, diagnose and add, with the same meaning in all of them.
+// Options with the same meaning in compare, calibrate, diagnose, add and serve.
 #include <omp.h>
 
 #include <algorithm>
@@ -34,8 +34,8 @@ struct AnalysisOptions {
   Judging judging;
   std::vector<std::pair<std::string, const sim::Effect*>> user_models;  ///< user-defined models, by file
 
-  /// Declares the options. `files`: the content of --out, for the help. Returns the options of a single
-  /// plant's records and fit, which do not apply to a command on a grid or a fleet.
+  /// Declares the options. `files`: names of the files in --out, for the help. Returns the options that
+  /// concern a single plant; they are invalid if the command processes a grid or a fleet.
   std::vector<Option> declare(CommandLine& line, const std::string& files) {
     std::vector<Option> of_one_plant;
     const auto keep = [&](const Option& option) { of_one_plant.push_back(option); };
@@ -80,14 +80,15 @@ struct AnalysisOptions {
                 .shows_default()
                 .between(0.001, 2.0)};
   }
-  /// Declares --hold-out, the events on which a fit is judged.
+  /// Declares --hold-out: the events that are excluded from the fit and used to judge it.
   void declare_hold_out(CommandLine& line) {
     line.group("Events");
     line.add("--hold-out", held_out,
              "record (name or number from 1) excluded from the fit, to judge it; may be repeated");
   }
 
-  /// Returns the options that read these records: " --records fault1.csv --power-only".
+  /// Returns the options with which another command reads the same records: " --records fault1.csv
+  /// --power-only".
   [[nodiscard]] std::string inputs() const {
     std::vector<std::string> words = {"--records"};
     words.insert(words.end(), records.begin(), records.end());
@@ -118,9 +119,8 @@ struct AnalysisOptions {
   void limit_threads() const {
     if (threads > 0) omp_set_num_threads(threads);
   }
-  /// Returns the plant model with the user-defined models of --user-defined model in its library. With
-  /// `to_fit`, a calibrated model is reset to its values before the calibration. Throws InputError if a file
-  /// is invalid.
+  /// Returns the plant model, with the user-defined models of --law in its library. With `to_fit`, a
+  /// calibrated model is reset to its values before the calibration. Throws InputError if a file is invalid.
   validate::plant::PlantModel load_model(bool to_fit) {
     using namespace validate;
     plant::PlantModel loaded = plant::load_plant_model(
@@ -135,7 +135,7 @@ struct AnalysisOptions {
       fmt::print(stderr, "note: started from the values before that calibration\n");
     return plant::as_submitted(std::move(loaded));
   }
-  /// Adds to the model the files of --user-defined model whose user-defined models it uses.
+  /// Adds to the model the names of those --law files whose user-defined models it uses.
   void keep_user_models(validate::plant::PlantModel& of) const {
     for (const auto& [file, effect] : user_models)
       for (const auto& block : of.plant.controls)

@@ -45,7 +45,7 @@ calibrate::CurveFit fit_curves(const Arguments& a, const plant::PlantModel& mode
   return calibrate::curve_fit(model, std::move(records), options);
 }
 
-/// Returns the use of the records: fit, or verification if held out.
+/// Returns the use of each record: fit, or verification if it is held out.
 compare::EventUse use_of(const Arguments& a, const std::vector<record::Record>& records) {
   const auto out = calibrate::held_out_events(records, a.options.held_out);
   compare::EventUse use{true};
@@ -54,8 +54,8 @@ compare::EventUse use_of(const Arguments& a, const std::vector<record::Record>& 
   return use;
 }
 
-/// Returns the command that follows: a comparison of the calibrated model, or the diagnosis of an inadequate
-/// one.
+/// Returns the recommended next command: a comparison of the calibrated model, or a diagnosis if it is not
+/// adequate.
 std::string next_command(const Arguments& a, bool adequate) {
   if (!adequate) return fmt::format("swingbank diagnose --model {}{}", a.of.model, a.of.inputs());
   return fmt::format("swingbank compare --model {}{}", (std::filesystem::path(a.of.out) / kModel).string(),
@@ -90,15 +90,15 @@ struct Calibrated {
   const plant::PlantModel& model;
   bool adequate;
   const std::string& sentence;
-  std::string report, comparison = {};  ///< for the terminal: on the fit; on other methods beside it
-  std::vector<std::string> provenance;  ///< head of the model's file
+  std::string report, comparison = {};  ///< text on the fit; on the comparison with other methods
+  std::vector<std::string> provenance;  ///< comment at the head of the model file
   std::vector<fit::FittedParameter> parameters;
   nlohmann::json json;
-  std::vector<std::string> notes = {};  ///< for the page
-  bool noise_alone = true;              ///< every event is within the limit of noise alone
+  std::vector<std::string> notes = {};  ///< notes on the page
+  bool noise_alone = true;              ///< whether the residuals of all events are within the noise limit
 };
 
-/// Plays the events with both models.
+/// Plays the events with the submitted and the calibrated model.
 std::vector<compare::Played> play_both(const Arguments& a, const plant::PlantModel& before,
                                        const plant::PlantModel& after,
                                        const std::vector<record::Record>& records) {
@@ -152,8 +152,8 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const check::Reco
                 .json = std::move(result)});
 }
 
-/// Returns the network's estimate from the fitted events, by `swingbank predict` or from --start; nothing
-/// without a network.
+/// Returns the network's estimate from the fitted events, by `swingbank predict` or from the file of --start.
+/// Returns nothing without a network.
 std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
                                                       const std::vector<record::Record>& records) {
   const auto out = calibrate::held_out_events(records, a.options.held_out);
@@ -179,7 +179,7 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
   return calibrate::read_estimate(file);
 }
 
-/// Runs the sparse parameter selection (--fewest) and writes the model with the selected parameters changed.
+/// Runs the sparse parameter selection (--fewest) and writes the model with the changed parameters.
 int run_sparse(Arguments& a, const plant::PlantModel& model, const check::RecordSet& set) {
   const calibrate::WrongParameters w = calibrate::wrong_parameters(model, set.records, a.options);
   a.fitted = w.found.fit;

@@ -14,7 +14,8 @@
 namespace swingbank::jobs {
 namespace {
 
-/// Returns a validator for a one-sided range. CLI11's own would print the largest double as the other bound.
+/// Returns a validator for a one-sided range. CLI11's validator would print the largest double as the other
+/// bound.
 CLI::Validator number_that(bool (*accepts)(double), const std::string& name, const std::string& wanted) {
   return {[accepts, wanted](std::string& text) {
             double value = 0;
@@ -65,8 +66,9 @@ class GroupedHelp : public CLI::Formatter {
     }
     return text + "\n" + make_footer(app);
   }
-  /// Omits the list of excluded options, which may be long; the error message names those given. The dots of
-  /// several values are kept only where they may follow one use of the option.
+  /// Omits the list of excluded options, which may be long; the error message names the excluded options that
+  /// were given. Keeps the dots, which mean several values, only if these may follow a single mention of the
+  /// option.
   std::string make_option_opts(const CLI::Option* option) const override {
     std::string text = CLI::Formatter::make_option_opts(option);
     constexpr std::string_view kSeveral = " ...";

@@ -1,6 +1,6 @@
 #pragma once
-// Command-line options, their help and their errors: CLI11 behind an interface without templates, so that it
-// is compiled once and not in every command.
+// Command-line options, their help and their errors. The interface hides CLI11's templates, so that CLI11 is
+// compiled once instead of in every command.
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -19,7 +19,7 @@ class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
   const Option& required() const;
-  const Option& shows_default() const;  ///< show the variable's present value in the help
+  const Option& shows_default() const;  ///< show the variable's initial value in the help
   const Option& one_of(const std::vector<std::string>& words) const;
   const Option& between(int low, int high) const;
   const Option& between(double low, double high) const;
@@ -27,7 +27,7 @@ class Option {
   const Option& not_negative() const;
   const Option& existing_file() const;
   const Option& comma_separated() const;       ///< one argument may contain several values
-  const Option& one_value_a_mention() const;   ///< of a list: one value for each use of the option
+  const Option& one_value_a_mention() const;   ///< for a list: one value per mention of the option
   const Option& needs(Option other) const;     ///< invalid without `other`
   const Option& excludes(Option other) const;  ///< invalid together with `other`
 
@@ -35,14 +35,14 @@ class Option {
   CLI::Option* option_;  ///< owned by the CommandLine
 };
 
-/// Parser of a command line. The variables passed to add() must live until parse(). Option names are
+/// Parser of a command line. The variables passed to add() must exist until parse(). Option names are
 /// separated by commas; a name without dashes is a positional argument.
 class CommandLine {
  public:
-  /// `name`: "swingbank add".
+  /// `name`: name of the command, for example "swingbank add".
   CommandLine(const std::string& summary, const std::string& name);
   ~CommandLine();
-  /// Replaces the summary at the head of the help, where a command needs more than one line.
+  /// Replaces the summary at the head of the help by a text of several lines.
   void describe(const std::string& text);
 
   /// Adds an option. T: std::string, std::filesystem::path, int, unsigned, std::uint64_t, double, an optional
@@ -55,7 +55,8 @@ class CommandLine {
   Option add_flag(const std::string& names, bool& on, const std::string& meaning);
   /// Adds a flag that sets `on` to false.
   Option add_flag_off(const std::string& name, bool& on, const std::string& meaning);
-  /// Sets the help's heading for options added after this call. "Output" and "Expert" come last.
+  /// Sets the heading in the help for options that are added after this call. "Output" and "Expert" come
+  /// last.
   void group(const std::string& name);
   void footer(const std::string& text);
   /// Adds an example command line below the options in the help.
@@ -66,7 +67,7 @@ class CommandLine {
   bool parse(int argc, char** argv);
   /// Prints the help or the error if parse() returned false. Returns the exit code.
   [[nodiscard]] int end() const;
-  /// Prints the error that `what` is required. Returns the exit code.
+  /// Prints the error that the option `what` is missing. Returns the exit code.
   [[nodiscard]] int lacks(const std::string& what) const;
 
  private:
@@ -76,8 +77,8 @@ class CommandLine {
 };
 
 /// Declares the options on `line` (summary and name are set), parses the arguments and runs the command.
-/// Returns the exit code: 0 success, 1 an error that was printed, others as the command's help states. Its
-/// exceptions become messages (guarded.hpp).
+/// Returns the exit code: 0 success, 1 an error that was printed, others as the command's help states.
+/// Exceptions become error messages (guarded.hpp).
 using CommandFunction = int(CommandLine& line, int argc, char** argv);
 
 }  // namespace swingbank::jobs

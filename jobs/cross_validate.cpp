@@ -1,5 +1,5 @@
 // swingbank cross-validate: leave-one-generator-out cross-validation (Tables V and VI). Processes started by
-// mpirun or srun share the folds; a Slurm array task takes one with --fold.
+// mpirun or srun share the folds. A task of a Slurm job array trains one fold (--fold).
 #include "train/run/cross_validate.hpp"
 
 #include "jobs/training_options.hpp"
@@ -33,7 +33,7 @@ int train_folds(const train::data::ShardStream& stream, train::run::RunRequest r
     return 1;
   }
 }
-/// Trains the folds with the scores on other generators than the one left out (--judge-on).
+/// Trains the folds and scores them on generators other than the one left out (--judge-on).
 int train_nested(const train::data::ShardStream& stream, train::run::RunRequest request,
                  const std::vector<std::int32_t>& folds, const std::string& judged, int threads) {
   for (const std::int32_t fold : folds)
@@ -75,7 +75,7 @@ int run(CommandLine& line, int argc, char** argv) {
     const int threads = options.threads > 0 ? options.threads : train::runtime::default_threads();
     const int wanted = processes > 0 ? processes : place.size > 1 ? 1 : threads;
     const int count = std::min(wanted, static_cast<int>(folds.size()));
-    const train::data::ShardStream stream = options.open(request);  // read once, shared by the processes
+    const train::data::ShardStream stream = options.open(request);  // read once; the processes share it
     return train::run::run_processes(count, [&](train::runtime::Place mine) {
       const auto own = train::run::share_of(folds, mine);
       const int each = std::max(1, threads / count);

@@ -1,4 +1,4 @@
-// swingbank diagnose: names the physical effect that a plant model lacks.
+// swingbank diagnose: names the component (effect) that a plant model lacks.
 #include <fmt/format.h>
 #include <sys/prctl.h>
 
@@ -24,7 +24,8 @@ using namespace validate;
 
 constexpr const char *kPage = "report.html", *kResult = "diagnosis.json";
 
-/// Writes the user-defined model that was found. Returns its path; empty if none was found.
+/// Writes the file of the user-defined model that the search found. Returns its path; empty if none was
+/// found.
 std::filesystem::path write_user_model(const diagnose::Diagnosis& d, OutputFolder& folder) {
   const user_model_search::UserModelFinding* user_model = d.user_models.found();
   if (!user_model) return {};
@@ -96,9 +97,9 @@ int run(Command& c) {
 
 /// Diagnoses one plant of the fleet in this process and prints {"was_there", "row"} to standard output.
 int diagnose_fleet_plant(const jobs::FleetCommand& c, const std::string& name) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with its rank, so that it cannot write during the next run
-  catch_stop_signals();                // switches interruption points off
-  for (const int s : {SIGTERM, SIGINT, SIGUSR1}) std::signal(s, SIG_IGN);  // finishes in a graceful stop
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with its rank, so that it does not write during the next run
+  catch_stop_signals();                // disables interruption points
+  for (const int s : {SIGTERM, SIGINT, SIGUSR1}) std::signal(s, SIG_IGN);  // finishes despite a graceful stop
   const fleet::Fleet fleet = fleet::load_fleet(c.fleet);
   const auto plant = std::ranges::find(fleet.plants, name, &fleet::FleetPlant::name);
   if (plant == fleet.plants.end())
@@ -115,7 +116,8 @@ int diagnose_fleet_plant(const jobs::FleetCommand& c, const std::string& name) {
   return 0;
 }
 
-/// Diagnoses the fleet: in this process or, under a launcher, by the program with MPI, which replaces it.
+/// Diagnoses the fleet in this process or, under a launcher, by the program with MPI, which replaces this
+/// process.
 int diagnose_fleet(const jobs::FleetCommand& c) {
   if (!launched()) return jobs::run_fleet(c, mpi::items::OneProcess());
   try {

@@ -1,5 +1,5 @@
-// swingbank diagnose-fleet: the fleet of `swingbank diagnose --fleet` under mpirun or srun. That command
-// starts it, so that only fleets on several ranks load MPI.
+// swingbank diagnose-fleet: implementation of `swingbank diagnose --fleet` under mpirun or srun. `diagnose`
+// starts it as a separate program, so that only fleets on several ranks load MPI.
 #include "jobs/command_line.hpp"
 #include "jobs/fleet_run.hpp"
 #include "mpi/ranks/item_ranks.hpp"

@@ -67,7 +67,7 @@ void print_table(const std::vector<std::vector<std::string>>& rows) {
   }
 }
 
-/// Sources of an effect's values, numbered in order of first use.
+/// Footnotes: sources of an effect's values, numbered in order of first use.
 class Footnotes {
  public:
   /// Returns the source numbers of a parameter: "1", or "1 2" if default and bounds have different sources.
@@ -176,14 +176,14 @@ std::string nearest_names(const library::EffectLibrary& library, const std::stri
   return names;
 }
 
-/// Returns whether a name begins like a model of inverters, wind or storage.
+/// Returns whether a name begins like that of an inverter, wind or storage model.
 bool is_inverter(const std::string& name) {
   constexpr std::string_view kBeginnings[] = {"REGC", "REEC", "REPC", "WT1",  "WT2", "WT3",  "WT4",
                                               "WTDT", "WTAR", "WTPT", "WTTQ", "PVG", "PVEU", "DERA"};
   return std::ranges::any_of(kBeginnings, [&](std::string_view b) { return name.starts_with(b); });
 }
 
-/// Prints the effect's block of a plant file with default values.
+/// Prints the effect's table in a plant file, with default values.
 void print_toml(const Effect& e) {
   const std::string slot(kind_name(e));
   fmt::print("{}\n", is_shared(e.slot) ? "[[" + slot + "]]" : "[" + slot + "]");

@@ -1,6 +1,6 @@
 #pragma once
-// Shared code of commands that work on several records: options for reading them, checks of all records
-// together, and progress.
+// Shared code of commands that process several records: options for reading, checks of all records together,
+// and progress.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -26,18 +26,18 @@
 
 namespace swingbank::jobs {
 
-/// Value of --quiet: standard error shows errors only, no progress and no notes.
+/// Value of --quiet: standard error shows only errors, neither progress nor notes.
 inline bool quiet = false;
 
-/// Options for reading a command's records; they supplement the plant file.
+/// Options for reading the records of a command, in addition to the plant file's settings.
 struct Reading {
   std::vector<std::string> columns;  ///< "V=BUS1.VPM [kV]"
   std::optional<double> from, until;
-  std::string component = "plant";    ///< part of the plant that is tested
-  std::string point;                  ///< file of the point that several units share; empty: the plant's own
+  std::string component = "plant";    ///< part of the plant under test
+  std::string point;                  ///< file of the measuring point that several units share; empty: none
   std::vector<std::string> switches;  ///< switching times given by the user, "event4.csv=2.08"
 
-  /// Adds the options for columns, time range, component and measured point.
+  /// Adds the options for columns, time range, component and measuring point.
   std::vector<Option> add_to(CommandLine& line) {
     return {add_columns(line), add_from(line), add_until(line), add_component(line), add_point(line)};
   }
@@ -57,7 +57,7 @@ struct Reading {
   Option add_until(CommandLine& line) {
     return line.add("--until", until, "exclude samples after this time [s]");
   }
-  /// Adds --point, the measured point that several units share.
+  /// Adds --point, the measuring point that several units share.
   Option add_point(CommandLine& line) {
     return line.add(
         "--point", point,
@@ -73,7 +73,7 @@ struct Reading {
              "from voltage steps and fitted")
         .one_value_a_mention();
   }
-  /// Adds --component, the part of the plant that is tested.
+  /// Adds --component, the part of the plant under test.
   Option add_component(CommandLine& line) {
     return line
         .add("--component", component,
@@ -94,8 +94,8 @@ struct Reading {
     return all;
   }
   /// Applies the options to the model. Returns a function that prepares each record before its checks: it
-  /// sets the switching times and subtracts other units behind a shared point. Throws InputError if an option
-  /// is invalid.
+  /// sets the switching times, and subtracts the power of the other units at a shared measuring point. Throws
+  /// InputError if an option is invalid.
   validate::check::Preparing apply(validate::plant::PlantModel& model,
                                    const std::vector<std::string>& records) const {
     Problems problems;
@@ -132,8 +132,8 @@ struct Reading {
   }
 };
 
-/// Prints a note for each staged event that belongs to none of these records; it belongs to another test, or
-/// its name is misspelled.
+/// Prints a note for each staged event that applies to none of these records: it belongs to another test, or
+/// its record's name is misspelled.
 inline void note_unused_events(const std::vector<std::string>& files,
                                const std::vector<validate::record::StagedEvent>& staged) {
   if (quiet) return;
@@ -176,7 +176,7 @@ inline nlohmann::json records_json(const validate::check::RecordSet& set) {
   return all;
 }
 
-/// Prints a model's warnings and its default values to standard error.
+/// Prints a model's warnings, and its parameters with default values, to standard error.
 inline void print_warnings(const validate::plant::PlantModel& model) {
   if (quiet) return;
   for (const auto& warning : model.warnings) fmt::print(stderr, "note: {}\n", warning);
@@ -184,12 +184,12 @@ inline void print_warnings(const validate::plant::PlantModel& model) {
     fmt::print(stderr, "note: default values, not this plant's: {}\n", fmt::join(model.defaults, ", "));
 }
 
-/// Returns a progress callback. It updates one line if standard error is a terminal, and prints a line every
-/// ten seconds otherwise. With --quiet, returns an empty function.
+/// Returns a progress callback. On a terminal it updates one line of standard error; otherwise it prints a
+/// line every ten seconds. With --quiet, returns an empty function.
 inline validate::event::Progress progress_line(const ProgressPlan& plan = {}) {
   if (quiet) return {};
   using Clock = std::chrono::steady_clock;
-  struct State {  // copies of the function share it
+  struct State {  // shared by copies of the function
     PlannedProgress at;
     Clock::time_point start = Clock::now(), said = start;
   };

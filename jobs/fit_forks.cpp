@@ -42,7 +42,7 @@ bool read_all(int socket, char* data, std::size_t size) {
   return true;
 }
 
-/// Messages begin with their length.
+/// Writes a message, preceded by its length. Returns false if the other end is closed.
 bool write_message(int socket, const nlohmann::json& message) {
   const std::string text = json_text(message);
   const auto size = static_cast<std::uint32_t>(text.size());
@@ -57,7 +57,7 @@ nlohmann::json read_message(int socket) {
   return nlohmann::json::parse(text, nullptr, false);
 }
 
-/// A message of one byte that carries a socket.
+/// Message of one byte that transfers a socket to another process.
 struct SocketMessage {
   SocketMessage() {
     header.msg_iov = &data;
@@ -74,7 +74,7 @@ struct SocketMessage {
   msghdr header{};
 };
 
-/// Sends a socket to the process at the other end of `control`. Returns false if that has ended.
+/// Sends a socket to the process at the other end of `control`. Returns false if that process has ended.
 bool send_socket(int control, int socket) {
   SocketMessage message;
   cmsghdr* head = CMSG_FIRSTHDR(&message.header);
@@ -98,11 +98,11 @@ std::optional<int> receive_socket(int control) {
 /// Runs one fit; does not return.
 [[noreturn]] void run_fit(const FitForks::Work& work, int socket) {
   interrupt_on_stop_signals();
-  std::signal(SIGINT, SIG_IGN);  // Ctrl-C ends the server, which closes the socket
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C ends the server, which then closes the socket
   swingbank::detail::first_rank = 0;
   const nlohmann::json request = read_message(socket);
   if (!request.is_object()) ::_exit(1);
-  std::thread([socket] {  // a word, or the end of the server, ends the fit
+  std::thread([socket] {  // a byte, or the closing of the socket, ends the fit
     char word = 0;
     (void)until_done([&] { return ::recv(socket, &word, 1, 0); });
     swingbank::detail::stop_asked = 1;
@@ -124,7 +124,7 @@ std::optional<int> receive_socket(int control) {
       ::close(control);
       run_fit(work, *socket);
     }
-    ::close(*socket);  // after a failed fork the server reads the end of the fit
+    ::close(*socket);  // after a failed fork, the server thus reads the end of the fit
   }
   ::_exit(0);
 }

@@ -1,6 +1,6 @@
 #pragma once
-// Fits in separate processes, so that a crash of a fit does not end the server, and a stop signal reaches
-// this fit alone.
+// Fits in separate processes. A crash of a fit thus does not end the server, and a stop request reaches only
+// one fit.
 #include <functional>
 #include <memory>
 
@@ -25,14 +25,14 @@ class FitProcess {
   int socket_;
 };
 
-/// Source of such processes: a copy of this process from before it started threads, which forks again for
-/// every fit.
+/// Factory of such processes: a copy of this process, forked before this process starts threads. The copy
+/// forks once more for every fit.
 class FitForks {
  public:
-  /// Work of a process: a request, and the function that sends messages.
+  /// Work of a process; it receives the request and a function that sends messages.
   using Work = std::function<void(const nlohmann::json& request,
                                   const std::function<void(const nlohmann::json&)>& send)>;
-  /// Forks the copy. No other thread may run, and this thread may not have used OpenMP.
+  /// Forks the copy. No other thread may run, and this thread must not have used OpenMP.
   explicit FitForks(const Work& work);
   /// Ends the copy, and asks running fits to end.
   ~FitForks();

@@ -1,6 +1,6 @@
 #pragma once
-// Diagnosis of a fleet (swingbank diagnose --fleet): plants distributed over ranks, each diagnosed in a
-// separate process, so that a crash or a lack of memory affects one plant only.
+// Diagnosis of a fleet (swingbank diagnose --fleet). The plants are distributed over ranks, and each is
+// diagnosed in a separate process. A crash or a lack of memory thus affects only one plant.
 #include <string>
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace swingbank::jobs {
 /// Options of a fleet's diagnosis.
 struct FleetCommand {
   std::string fleet, out;
-  /// Threads for one plant; 0: one per core; -1: one per core if a rank has the machine to itself, else 1.
+  /// Threads for one plant; 0: one per core; -1: one per core if only one rank runs on the machine, else 1.
   int threads = -1;
   bool json = false;
   double limit = 3600.0;  ///< time limit for one plant [s]; 0: none
@@ -23,9 +23,10 @@ void declare_fleet(CommandLine& line, FleetCommand& command);
 /// Returns the command as arguments of these options.
 std::vector<std::string> fleet_words(const FleetCommand& command);
 
-/// Diagnoses every plant on the ranks and prints the table. A plant's process is `swingbank-diagnose --plant`
-/// in this program's folder; it prints {"was_there", "row"}. Returns the exit code, the same on all ranks: 0
-/// all plants adequate, 3 some plant is not, 1 some plant failed or invalid input, 2 stopped by a signal.
+/// Diagnoses every plant on the ranks and prints the table. The process of a plant is `swingbank-diagnose
+/// --plant` in this program's folder; it prints {"was_there", "row"}. Returns the exit code, the same on all
+/// ranks: 0 if all plants are complete, 3 if a plant is not, 1 if a plant failed or the input is invalid, 2
+/// after a stop signal.
 int run_fleet(const FleetCommand& command, const mpi::items::Ranks& ranks);
 
 }  // namespace swingbank::jobs

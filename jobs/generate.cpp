@@ -102,7 +102,7 @@ mpi::store::Part part_of(const std::string& text) {
   return part;
 }
 
-/// Temporary folder with the files of a card, one for each rank.
+/// Temporary folder with the files of a card. Each rank has its own.
 class Unpacked {
  public:
   explicit Unpacked(const mpi::draw::Card& card) {
@@ -123,7 +123,8 @@ class Unpacked {
   std::filesystem::path folder_;
 };
 
-/// Throws InputError unless config hash and kernel equal those of the card, so that the dataset is the same.
+/// Throws InputError if config hash or kernel variant differ from those of the card: the dataset would
+/// differ.
 void require_card_kept(const mpi::draw::Card& card, const mpi::draw::DatasetConfig& config) {
   const std::string kernel = mpi::draw::kernel_variant(mpi::draw::load_study(config));
   if (mpi::draw::config_hash(config, kernel) == card.config_hash) return;
@@ -168,8 +169,8 @@ int run(const Command& c, bool first) {
   return code;
 }
 
-/// Parses the command line on all ranks, whose arguments may differ. Returns the exit code, the same on all
-/// ranks, if any rank was asked for help or has an invalid option; nothing otherwise.
+/// Parses the command line on all ranks; their arguments may differ. If any rank was asked for help or has an
+/// invalid option, returns the exit code, the same on all ranks. Otherwise returns nothing.
 std::optional<int> parse(jobs::CommandLine& line, int argc, char** argv,
                          const mpi::ranks::MpiSession& session) {
   const bool works = line.parse(argc, argv);

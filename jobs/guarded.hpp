@@ -13,7 +13,7 @@
 
 namespace swingbank::jobs {
 
-/// Returns the problems of an input, one a line; problems that differ only in their place share a line.
+/// Returns the problems of an input, one per line. Problems that differ only in their place share a line.
 inline std::string problems_text(const InputError& error) {
   std::vector<Problem> lines;
   for (const Problem& p : error.problems()) {
@@ -29,8 +29,8 @@ inline std::string problems_text(const InputError& error) {
   return text;
 }
 
-/// Runs `action` and returns its exit code. Prints exceptions as messages: code 1 for invalid input and
-/// failures, code 2 for a stop signal before any result.
+/// Runs `action` and returns its exit code. Prints an exception as an error message and returns 1; returns 2
+/// after a stop signal before any result.
 template <class F>
 int guarded(const std::string& command, F action) {
   try {

@@ -1,5 +1,4 @@
-// swingbank inventory: lists the units of a PSS/E or PSLF case, those wholly covered, and the models that are
-// not.
+// swingbank inventory: lists the units of a PSS/E or PSLF case and the models that Swingbank does not cover.
 #include "sim/grid/inventory.hpp"
 
 #include <fmt/format.h>
@@ -60,7 +59,7 @@ void print_models(const Inventory& inventory) {
   }
 }
 
-/// Prints the problems; those that differ only in place and numbers form one group.
+/// Prints the problems, grouped by text. Problems in a group differ only in place and numbers.
 void print_faults(const char* title, const std::vector<std::string>& faults) {
   std::map<std::string, std::pair<int, std::string>> groups;
   for (const auto& fault : faults) {

@@ -14,9 +14,9 @@ namespace swingbank::jobs {
 /// Counter of finished items.
 class ItemProgress {
  public:
-  /// `unit`: "plants".
+  /// `unit`: name of the items, for example "plants".
   ItemProgress(std::string unit, std::size_t total) : unit_(std::move(unit)), total_(total) {}
-  /// Counts one finished item and prints a line. With `was_there`, an earlier run had finished it, and it
+  /// Counts one finished item and prints a line. `was_there`: an earlier run had finished the item; it then
   /// does not count in the rate.
   void line(const std::string& text, bool was_there) {
     ++done_;

@@ -1,5 +1,5 @@
 #pragma once
-// Simulation of instruments: a run measured by transducers and PMUs before `simulate` writes it.
+// Simulated instruments (transducers, PMUs) that measure a run before `simulate` writes it.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -10,7 +10,7 @@
 
 namespace swingbank::sim {
 
-/// Run as written to the file; `frequency` is empty unless instruments measured the run.
+/// Run as `simulate` writes it. `frequency` is empty if no instrument measured the run.
 struct MeasuredRun : reference::ReferenceRun {
   std::vector<std::vector<double>> frequency;  ///< [plant][sample], reported by the instruments [Hz]
 };
@@ -44,7 +44,7 @@ inline MeasuredRun thinned(const MeasuredRun& run, int factor, const std::vector
   return thin;
 }
 
-/// Instruments of a run: those of each plant, followed by those of --measure, which all plants share.
+/// Instruments of a run: first those of each plant, then those of --measure, which apply to all plants.
 class Instruments {
  public:
   Instruments(const std::vector<std::string>& texts, const library::EffectLibrary& library,
@@ -55,9 +55,9 @@ class Instruments {
         chain_.push_back(std::move(*block));
   }
 
-  /// Simulates by `play(rate factor, channels)` -> ReferenceRun, measures the run, and returns the requested
-  /// channels. A chain with memory (a window or filter) measures the run at `kFiner` times the rate, so that
-  /// its windows are resolved.
+  /// Simulates with `play(rate factor, channels)`, which returns a ReferenceRun, measures the run, and
+  /// returns the requested channels. If an instrument has memory (a window or filter), the run is simulated
+  /// and measured at `kFiner` times the rate, so that its windows are resolved.
   template <class Play>
   MeasuredRun run(const grid::Grid& grid, const std::vector<int>& plants,
                   const std::vector<Channel>& channels, const Play& play) const {

@@ -19,7 +19,7 @@
 
 #include "validate/live/fits.hpp"
 #include "validate/live/overview.hpp"
-// Last: it defines the macro _res, which Eigen uses as a name.
+// Included last, because httplib defines the macro _res, which Eigen uses as a name.
 #include <httplib.h>
 
 namespace swingbank::jobs {
@@ -29,10 +29,10 @@ using namespace validate;
 using nlohmann::json;
 
 constexpr std::size_t kMostBytes = 1 << 20;    ///< largest body of a request
-constexpr std::size_t kMostSessions = 16;      ///< open pages; the one unused for longest is closed
-constexpr std::size_t kThreads = 256;          ///< connections served at once
-constexpr int kIdle = 2;                       ///< [s] until an idle connection is closed
-constexpr std::size_t kMostMessages = 10'000;  ///< messages kept for a page that does not read them
+constexpr std::size_t kMostSessions = 16;      ///< most open pages; the least recently used one is closed
+constexpr std::size_t kThreads = 256;          ///< most connections at the same time
+constexpr int kIdle = 2;                       ///< time until an idle connection is closed [s]
+constexpr std::size_t kMostMessages = 10'000;  ///< most messages kept for a page that does not read them
 
 /// Returns a random word of 32 hexadecimal digits from the system's generator.
 std::string random_word() {
@@ -42,8 +42,8 @@ std::string random_word() {
   return word;
 }
 
-/// Thread on which all comparisons run, one after another: every thread that uses OpenMP has a pool of its
-/// own.
+/// Thread on which all comparisons run, one after another. With several threads, each would have its own
+/// OpenMP thread pool.
 class Worker {
  public:
   /// Runs `work` on the thread and returns its result.
@@ -84,7 +84,7 @@ struct Page {
       : session(std::move(setup), std::move(submitted)) {}
   live::Session session;
   std::atomic<std::uint64_t> latest{0};  ///< sequence number of the newest preview
-  std::mutex lock;                       ///< of all below
+  std::mutex lock;                       ///< guards all members below
   std::condition_variable news;
   std::deque<std::string> messages;  ///< not yet sent to the page
   std::shared_ptr<FitProcess> fit;   ///< running fit
@@ -108,14 +108,14 @@ live::Values values_of(const json& body) {
 struct PageServer::State {
   PageParts parts;
   std::string token = random_word();
-  int port = 0, socket = -1;  ///< where it listens
+  int port = 0, socket = -1;  ///< port and socket of the server
   httplib::Server http;
   std::mutex lock;
   std::map<std::string, std::shared_ptr<Page>> pages;
   std::atomic<int> readers{0};  ///< threads that read the messages of fits
   Worker worker;
 
-  /// Refuses requests that do not come from the page itself.
+  /// Returns whether a request comes from the page itself.
   [[nodiscard]] bool is_own(const httplib::Request& r) const {
     const std::array hosts = {fmt::format("127.0.0.1:{}", port), fmt::format("localhost:{}", port)};
     const std::string host = r.get_header_value("Host"), origin = r.get_header_value("Origin");
@@ -132,7 +132,7 @@ struct PageServer::State {
     found->second->used = std::chrono::steady_clock::now();
     return found->second;
   }
-  /// Returns the session of this name if it is open, as after a reload; else a new one.
+  /// Returns the session of this name if it is open (after a reload of the page), else a new one.
   std::pair<std::string, std::shared_ptr<Page>> open(const std::string& known) {
     {
       const std::lock_guard guard(lock);
@@ -140,7 +140,7 @@ struct PageServer::State {
     }
     auto submitted = parts.first();
     auto page = std::make_shared<Page>(parts.setup, std::move(submitted));
-    std::shared_ptr<Page> closed;  // destroyed after the lock
+    std::shared_ptr<Page> closed;  // destroyed after the lock is released
     const std::lock_guard guard(lock);
     if (pages.size() >= kMostSessions) {
       const auto oldest = std::ranges::min_element(pages, {}, [](const auto& p) { return p.second->used; });
@@ -175,7 +175,7 @@ struct PageServer::State {
     std::uint64_t latest = of->latest;
     while (latest < number && !of->latest.compare_exchange_weak(latest, number)) {
     }
-    if (of->latest > number) {  // a newer drag has arrived
+    if (of->latest > number) {  // a newer slider position has arrived
       out.status = 204;
       return;
     }
@@ -197,7 +197,7 @@ struct PageServer::State {
     reply(out, live::step_json(*parts.setup, *of->session.step(k), k));
   }
 
-  /// Reads the messages of a fit to its end; a new model becomes a step.
+  /// Reads the messages of a fit until its end. A new model becomes a step of the session.
   void follow(const std::shared_ptr<Page>& of, const std::shared_ptr<FitProcess>& fit, const json& request) {
     const auto progress = parts.progress(request.at("kind"));
     bool ended = false;
@@ -371,7 +371,7 @@ void PageServer::State::routes() {
 
 PageServer::PageServer(PageParts parts, int port) : state_(std::make_unique<State>()) {
   state_->parts = std::move(parts);
-  state_->routes();  // before the socket is made, which takes its options from there
+  state_->routes();  // before the socket is created, because it uses options that are set there
   const char* const here = "127.0.0.1";
   if (port == 0)
     state_->port = state_->http.bind_to_any_port(here);
@@ -380,7 +380,7 @@ PageServer::PageServer(PageParts parts, int port) : state_(std::make_unique<Stat
   if (state_->port <= 0)
     throw InputError({fmt::format("port {}", port), "--port", "another program uses it",
                       "choose another one, or leave --port out"});
-  // httplib's queue of 5 connections drops the next ones, which a browser repeats after a second.
+  // httplib's queue has 5 connections and drops further ones, which a browser repeats only after a second.
   ::listen(state_->socket, static_cast<int>(kThreads));
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// HTTP server of the live page: on the loopback interface only, behind a random token, with sessions that do
-// not disturb one another.
+// HTTP server of the live page: only on the loopback interface, protected by a random token, with independent
+// sessions.
 #include <functional>
 #include <memory>
 #include <string>
@@ -15,20 +15,21 @@ namespace swingbank::jobs {
 /// Parts of the page that the command supplies.
 struct PageParts {
   std::shared_ptr<const validate::live::Setup> setup;  ///< inputs
-  /// Return the submitted step, provisional and compared; wait until it is complete.
+  /// Return the step of the submitted model: `first` with the detected switching times, `submitted` with the
+  /// fitted ones. Both wait until the step is computed.
   std::function<std::shared_ptr<const validate::live::Step>()> first, submitted;
   /// Starts a fit (validate/live/fits.hpp).
   std::function<std::unique_ptr<FitProcess>(const nlohmann::json& request)> start_fit;
-  /// Returns the progress text of a message of a fit.
+  /// Returns a function that formats the progress messages of a fit of this kind.
   std::function<std::function<std::string(const nlohmann::json& message)>(const std::string& kind)> progress;
-  /// Saves a step; returns the messages to the user.
+  /// Saves a step and returns the messages to the user.
   std::function<nlohmann::json(const validate::live::Session& session, int step)> save;
 };
 
 /// Server of the page.
 class PageServer {
  public:
-  /// Binds 127.0.0.1 at `port`; 0: a free one. Throws InputError if the port is in use.
+  /// Binds 127.0.0.1 at `port`; 0: any free port. Throws InputError if the port is in use.
   PageServer(PageParts parts, int port);
   ~PageServer();
   PageServer(const PageServer&) = delete;

@@ -1,4 +1,5 @@
-// swingbank plant: extracts one unit of a PSS/E or PSLF case as a plant file, from its own records only.
+// swingbank plant: extracts one unit of a PSS/E or PSLF case as a plant file. Reads only the unit's own
+// records.
 #include <fmt/format.h>
 
 #include <optional>
@@ -50,7 +51,7 @@ int run(Arguments& a) {
       fmt::print(stderr, "note: {}\n", note);
       head.push_back(note);
     }
-  if (model.record_base.kv <= 0)  // not into the file, where the note would remain after base_kv is filled in
+  if (model.record_base.kv <= 0)  // the note is not in the file, where it would remain after base_kv is added
     fmt::print(stderr,
                "note: the case gives bus {} no nominal voltage (BASKV = {:g} kV): for records in kV write "
                "base_kv, line to line, under [record]\n",

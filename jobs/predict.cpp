@@ -61,8 +61,8 @@ std::pair<double, double> over_records(const std::vector<Estimated>& all, std::s
   return {mean, all.size() > 1 ? std::sqrt(square / static_cast<double>(all.size() - 1)) : 0.0};
 }
 
-/// Returns the 5 %, 50 % and 95 % quantiles of the posterior of each parameter, null for fixed ones; empty if
-/// the network has no posterior.
+/// Returns the 5 %, 50 % and 95 % quantiles of each parameter's posterior; null for a fixed parameter. Empty
+/// if the network has no posterior.
 ordered_json intervals_json(const train::run::Estimate& e) {
   ordered_json all = ordered_json::array();
   if (std::ranges::none_of(e.intervals, [](const auto& i) { return i.has_value(); })) return all;
@@ -71,13 +71,13 @@ ordered_json intervals_json(const train::run::Estimate& e) {
   return all;
 }
 
-/// Returns whether a record is outside the training distribution, for which the network's estimate is
-/// meaningless. The margin allows for held-out generators that swing more than the training set.
+/// Returns whether a record is outside the training distribution; the network's estimate is then meaningless.
+/// The margin allows for generators that were left out and swing more than those of the training rows.
 bool unlike_training(const train::run::NetworkInfo& n, const Estimated& e) {
   constexpr double kStrange = 1.5;
   return e.estimate.input_rms > kStrange * n.input_rms_seen;
 }
-/// Returns the warnings for such records, printed before the estimates.
+/// Returns the warnings for records outside the training distribution. They are printed before the estimates.
 std::string strangers(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
   std::string text;
   for (const auto& e : all)

@@ -27,7 +27,7 @@ inline std::filesystem::path browser() {
   return {};
 }
 
-/// Records a problem if a PDF cannot be made; called before the work.
+/// Adds a problem if a PDF cannot be written. Call it before the work.
 inline void browser_for(const std::string& pdf, Problems& problems) {
   if (browser().empty())
     problems.add("no Chromium", "--pdf", "a page is printed by it, and PATH has none",
@@ -50,7 +50,7 @@ inline std::string file_url(const std::filesystem::path& file) {
   return url;
 }
 
-/// Prints the page to a PDF, which is written atomically. Throws InputError if the browser fails.
+/// Prints the page to a PDF file, written atomically. Throws InputError if the browser fails.
 inline void print_pdf(const std::filesystem::path& page, const std::filesystem::path& pdf) {
   namespace fs = std::filesystem;
   const Scratch scratch;

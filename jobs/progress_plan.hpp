@@ -1,6 +1,6 @@
 #pragma once
-// Progress text of long commands: phase, share done and time left. Each phase's share of the time was
-// measured on the example; other plants differ, so the text gives "about" as the time left.
+// Progress text of long commands: phase, share done and time left. The share of each phase in the total time
+// was measured on the example. Other plants differ; the text therefore says "about 20 s left".
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ using validate::event::Phase, validate::event::phase_words;
 struct PlannedPhase {
   Phase phase;
   double from, to;      ///< share of the total time at the phase's begin and end
-  bool beyond = false;  ///< optional phase after an unsuccessful search; may take longer than all others
+  bool beyond = false;  ///< optional phase after an unsuccessful search, without estimate
 };
 /// Sequence of a command's phases.
 using ProgressPlan = std::vector<PlannedPhase>;
@@ -76,8 +76,9 @@ inline const ProgressPlan kSparsePlan = {
 class PlannedProgress {
  public:
   explicit PlannedProgress(ProgressPlan plan) : plan_(std::move(plan)) {}
-  /// Returns "37 % done, about 1 min 20 s left: quick fits (SEXS, 16 of 26)" after `seconds` [s]. Omits the
-  /// share for a phase that the plan does not contain. Adds "round 2" to a phase that begins again.
+  /// Returns the text "37 % done, about 1 min 20 s left: quick fits (SEXS, 16 of 26)". `seconds`: time since
+  /// the start [s]. Omits share and time for a phase that the plan does not contain. Adds "round 2" if a
+  /// phase begins again.
   std::string line(Phase phase, const std::string& item, int done, int total, double seconds) {
     const int round = round_of(phase, done);
     const std::string what =
@@ -97,15 +98,15 @@ class PlannedProgress {
   struct Seen {
     int done = 0, rounds = 1;
   };
-  /// Returns how often the phase has begun; a counter that restarts marks a new round.
+  /// Returns how often the phase has begun. A new round begins if `done` restarts.
   int round_of(Phase phase, int done) {
     const auto [seen, first] = seen_.try_emplace(phase);
     if (!first && done <= seen->second.done && done <= 1 && seen->second.done > 1) ++seen->second.rounds;
     seen->second.done = done;
     return seen->second.rounds;
   }
-  /// Returns ", about 1 min 20 s left"; empty if the total time exceeds an earlier estimate by more than
-  /// `kMayGrow`, because a growing estimate is useless.
+  /// Returns ", about 1 min 20 s left". Empty if the estimated total time exceeds the shortest earlier
+  /// estimate by more than the factor kMayGrow, because such an estimate is unreliable.
   std::string time_left(double seconds) {
     if (beyond_ || share_ < kLeastDone || share_ >= 1) return "";
     const double end = seconds / share_;

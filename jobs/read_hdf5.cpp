@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   using namespace swingbank;
   std::string kind, file;
   std::vector<std::string> names;
-  if (argc < 3) {  // with a file, arguments are not parsed: names of files may begin with a dash
+  if (argc < 3) {  // otherwise the arguments are not parsed, because file names may begin with a dash
     jobs::CommandLine line(
         "read an HDF5 or MATLAB file in a separate process, so that its crash does not end the command",
         "swingbank read-hdf5");

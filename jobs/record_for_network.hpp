@@ -1,6 +1,6 @@
 #pragma once
-// Conversion of a measured record to a network's input: event time, base, rate and channels of the training
-// dataset.
+// Conversion of a measured record to a network's input, with the event time, base, rate and channels of the
+// training dataset.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,12 +18,12 @@ namespace swingbank {
 struct NetworkInput {
   std::vector<float> values;  ///< channels x samples
   double event_s = 0.0;       ///< time of the event in the record [s]
-  double padding_s = 0.0;     ///< length before the record's start, filled with steady-state values [s]
+  double padding_s = 0.0;     ///< duration before the record's start, filled with steady values [s]
 };
 
 namespace record_detail {
 
-/// Returns the record's time series of a dataset's channel on the machine's base; empty if it was not
+/// Returns the record's time series for a channel of the dataset, on the machine base; empty if it was not
 /// measured.
 inline std::vector<double> series_of(const std::string& channel, const validate::record::Record& r,
                                      const validate::plant::PlantModel& model,
@@ -56,9 +56,9 @@ inline double between(const validate::record::Record& r, const std::vector<doubl
 }  // namespace record_detail
 
 /// Returns the record shifted to the event time of the network's dataset and resampled at its rate. The first
-/// sample and all samples before the record's start are the medians of the samples before the event, because
-/// a dataset's records begin in steady state. Throws InputError if no event is found, fewer than five samples
-/// precede it, a channel is missing, or the record ends too early.
+/// sample and all samples before the record's start are set to the median before the event, because the
+/// records of a dataset begin in steady state. Throws InputError if no event is found, fewer than five
+/// samples precede it, a channel is missing, or the record ends too early.
 inline NetworkInput network_input(const validate::record::Record& record,
                                   const validate::plant::PlantModel& model,
                                   const train::run::NetworkInfo& network, std::optional<double> event_s) {

@@ -1,6 +1,6 @@
 #pragma once
-// Results of calibrate and add: page, JSON and, after an interruption, the parameter values that the fit had
-// reached.
+// Results of calibrate and add: page, JSON and, after an interruption, the parameter values reached by the
+// fit.
 #include <fmt/format.h>
 
 #include <optional>
@@ -17,7 +17,7 @@ namespace swingbank::jobs {
 
 constexpr const char *kInterruptedModel = "model-interrupted.toml", *kPage = "report.html";
 
-/// Plays the events with the submitted model and with `after`, named `name`.
+/// Plays the events with the submitted model and with `after`; `name`: name of the latter in the results.
 inline std::vector<validate::compare::Played> play_both(const AnalysisOptions& of,
                                                         const validate::plant::PlantModel& before,
                                                         const std::string& name,
@@ -32,8 +32,9 @@ inline std::vector<validate::compare::Played> play_both(const AnalysisOptions& o
           validate::compare::play_and_judge(name, after, shown, options, of.judging.by)};
 }
 
-/// Writes the page and COMMAND.json, whose common part it adds to `result`; the page embeds it. `page` has
-/// title, events and verdict already. Returns the text on the model `after` for the terminal.
+/// Adds the entries common to all commands to `result`, and writes the page and COMMAND.json; the page also
+/// contains the JSON. `page` must already have title, events and verdict. Returns the terminal text on the
+/// model `after`.
 inline std::string write_results(const AnalysisOptions& of, const std::string& command,
                                  const std::string& command_line, const validate::plant::PlantModel& before,
                                  const validate::plant::PlantModel& after,
@@ -56,14 +57,15 @@ inline std::string write_results(const AnalysisOptions& of, const std::string& c
   return compare::handed_in_text(*page.handed_in);
 }
 
-/// Ends a command whose results are written: prints `result` or `text`, and the page to --pdf.
+/// Ends a command whose results are written: prints `result` (--json) or `text`, and prints the page to the
+/// file of --pdf.
 inline void finish_results(const AnalysisOptions& of, const nlohmann::json& result, const std::string& text) {
   of.results().finish();
   fmt::print("{}\n", of.json ? json_text(result, 1) : text);
   of.judging.print(of.results().path() / kPage);
 }
 
-/// Writes the values of an interrupted fit to files named "...interrupted" and keeps the results of earlier
+/// Writes the values of an interrupted fit to files named "...interrupted". Keeps the results of earlier
 /// runs. Returns the exit code.
 inline int write_interrupted(const AnalysisOptions& of, const std::string& command,
                              const std::string& command_line, const validate::plant::PlantModel& before,
@@ -96,8 +98,8 @@ inline int write_interrupted(const AnalysisOptions& of, const std::string& comma
   return kSubmitAgain;
 }
 
-/// Runs `work` and returns its exit code. If a signal ends it, writes the best values so far: `fitted`, or
-/// the values of the current fit. Rethrows Interrupted if there is no fit yet.
+/// Runs `work` and returns its exit code. If a signal ends the work, writes the best values so far: those of
+/// `fitted`, else those of the current fit. Rethrows Interrupted if there is no fit yet.
 template <class Work>
 int keep_reached(const AnalysisOptions& of, const std::string& command, const std::string& command_line,
                  const validate::plant::PlantModel& model, std::optional<validate::fit::Fit>& fitted,

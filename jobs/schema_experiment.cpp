@@ -1,4 +1,5 @@
-// swingbank schema-experiment: JSON Schema of experiments, which `swingbank schema` asks for.
+// swingbank schema-experiment: internal command that prints the JSON Schema of experiments for `swingbank
+// schema`.
 #include <fmt/format.h>
 
 #include "jobs/command_line.hpp"

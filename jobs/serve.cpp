@@ -71,7 +71,8 @@ void open_browser(const std::string& url) {
 }
 
 int run(Command& c) {
-  // The reading may use OpenMP, whose threads would not survive the fork below.
+  // Read in a temporary thread, because reading may use OpenMP, whose threads would not survive the fork
+  // below.
   auto reading = std::async(std::launch::async, [&] { return read_setup(c); });
   const std::shared_ptr<live::Setup> setup = reading.get();
   const jobs::FitForks forks([&](const json& request, const auto& send) {
@@ -83,8 +84,8 @@ int run(Command& c) {
     return [&setup, step_of] { return std::make_shared<const live::Step>(step_of(*setup)); };
   };
   const Submitted first = std::async(std::launch::async, compared(live::first_step));
-  // Computed on request of the page, after the first step is shown, so that the comparison does not take
-  // processor time from the browser.
+  // Computed when the page requests it, after it has shown the first step, so that the comparison does not
+  // take processor time from the browser.
   Submitted submitted;
   std::once_flag asked;
   jobs::PageParts parts;

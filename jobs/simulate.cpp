@@ -41,13 +41,13 @@ struct Options {
   std::optional<double> tolerance, frequency_hz;
   std::vector<std::string> ignore_models, map_models;
   bool after_switching = false, net_generators = false, widen_limits = false, drop_refused = false;
-  int complete_records = 0, devices = 0, repeated = 0;  // places of the words
+  int complete_records = 0, devices = 0, repeated = 0;  // indices of the chosen words
   int raw_version = 0;
   std::string start = "solved", q_limits = "enforce", switched_shunts = "fixed";
   std::filesystem::path changes;
 };
 
-/// Returns the option for a part of an event, with its value.
+/// Returns the option that defines a part of an event, with its value.
 std::string event_option(grid::EventPart part, const std::string& text) {
   constexpr const char* kOptions[] = {"--fault",     "--trip",      "--trip-generator", "--load-step",
                                       "--vref-step", "--pref-step", "--fault-type",     "--z0"};
@@ -146,7 +146,7 @@ reference::ReferenceRun play(const Options& o, int finer, const grid::Grid& grid
   return run;
 }
 
-/// Appends a comma and a number to a CSV line; NaN, a missing sample, gives an empty cell.
+/// Appends a comma and a number to a CSV line. A missing sample (NaN) is an empty cell.
 void put_cell(std::string& text, double value) {
   text += ',';
   if (!std::isnan(value)) fmt::format_to(std::back_inserter(text), "{:.12g}", value);
@@ -294,7 +294,7 @@ grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& mode
   return all;
 }
 
-/// Writes all changes made to the case, one line for each place.
+/// Writes all changes that were made to the case, one line per place.
 void write_changes(const std::filesystem::path& file, const network::Network& network) {
   std::string text;
   for (const network::Remark& remark : network.remarks) {

@@ -1,5 +1,5 @@
-// swingbank <command> [arguments]: runs swingbank-<command> from this program's folder, a symbolic link to
-// the program that contains the command (run_command.cpp).
+// swingbank <command> [arguments]: runs swingbank-<command> from this program's folder. That file is a
+// symbolic link to the program that contains the command (run_command.cpp).
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -26,7 +26,7 @@ struct Command {
   std::string name;
   std::string summary;
   std::string group;      ///< heading in the help; empty: internal, not listed
-  std::string component;  ///< part of an installation that contains it (cmake/install.cmake); empty: none
+  std::string component;  ///< component of an installation (cmake/install.cmake); empty: none
 };
 
 // Declared once, by swingbank_command() in jobs/CMakeLists.txt, in the order of the help.
@@ -103,9 +103,9 @@ std::vector<Level> levels() {
   return {{"x86-64-v4", v4}, {"x86-64-v3", v3}};
 }
 
-/// Returns the program for the highest level that this processor supports, or the common one. The environment
-/// variable SWINGBANK_LEVEL selects another: a name of levels(), or "common". Returns an empty path if
-/// processor or build do not support the selected level.
+/// Returns the program for the highest level that this processor supports and this build contains, else the
+/// common program. The environment variable SWINGBANK_LEVEL selects a level instead: a name of levels(), or
+/// "common". Returns an empty path if processor or build do not support the selected level.
 fs::path program_for_this_processor(const fs::path& folder, const std::string& name) {
   const fs::path file = std::string(kPrefix) + name;
   const char* asked = std::getenv("SWINGBANK_LEVEL");

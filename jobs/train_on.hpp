@@ -1,5 +1,5 @@
 #pragma once
-// Options and course of `swingbank train`, in this process or on the ranks of a launcher.
+// Options and execution of `swingbank train`, in this process or on the ranks of a launcher.
 #include <unistd.h>
 
 #include <functional>

@@ -1,5 +1,5 @@
-// swingbank train-ranks: `swingbank train` under mpirun or srun. That command starts it, so that only
-// trainings on several ranks load MPI, with parallel HDF5.
+// swingbank train-ranks: implementation of `swingbank train` under mpirun or srun. `train` starts it as a
+// separate program, so that only trainings on several ranks load MPI and parallel HDF5.
 #include "jobs/train_on.hpp"
 #include "mpi/ranks/item_ranks.hpp"
 #include "mpi/ranks/session.hpp"

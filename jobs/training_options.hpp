@@ -117,8 +117,8 @@ struct TrainingOptions {
     check_training_rows(r.experiment.training(preset, r.network).training_rows, r.network);
     return r;
   }
-  /// Throws InputError unless --training-rows is given exactly when the experiment uses such rows: a run on
-  /// other rows would otherwise have the same name as the correct one.
+  /// Throws InputError if --training-rows is given although the experiment does not use such rows, or is
+  /// missing although it does. Otherwise runs on different rows would have the same name.
   void check_training_rows(bool wanted, const std::string& of) const {
     if (wanted == !training_rows.empty()) return;
     throw InputError({wanted ? "no training-only rows" : "training-only rows", "--training-rows",
@@ -126,7 +126,7 @@ struct TrainingOptions {
                                   wanted ? "trains on" : "does not train on"),
                       wanted ? "give the folder of the experiment's training_dataset" : "leave it out"});
   }
-  /// Returns the stream of the dataset's shards, from disk or simulated in memory.
+  /// Returns the stream of the dataset's rows, read from disk or simulated in memory.
   [[nodiscard]] train::data::ShardStream open(const train::run::RunRequest& r) const {
     const auto bytes = static_cast<std::uint64_t>(memory_limit * static_cast<double>(std::uint64_t{1} << 30));
     const train::data::StreamOptions stream{
@@ -147,8 +147,8 @@ inline int exit_code(train::run::RunOutcome outcome) {
   return outcome == train::run::RunOutcome::stopped ? kSubmitAgain : 0;
 }
 
-/// Main function of both programs: options, --print, --keep, signals, errors. `check` throws InputError if
-/// the request cannot be fulfilled; it runs before the measurement of BLAS kernels and threads.
+/// Main function of both commands: options, --print, --keep, stop signals. `check` throws InputError if the
+/// request cannot be fulfilled; it is called before the BLAS kernels are measured.
 template <class Check, class Work>
 int training_main(int argc, char** argv, jobs::CommandLine& line, TrainingOptions& options,
                   const Check& check, const Work& work) {

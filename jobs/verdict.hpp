@@ -27,7 +27,7 @@ struct Judging {
   std::string accept, signed_by, pdf, standard;
   validate::thresholds::Acceptance by;
 
-  /// Declares the options; `preset`: the limits without --accept.
+  /// Declares the options. `preset`: acceptance limits if --accept is missing.
   Option add_to(CommandLine& line,
                 const std::string& preset = validate::thresholds::acceptance_presets().front()) {
     standard = preset;
@@ -52,17 +52,17 @@ struct Judging {
     if (!pdf.empty()) browser_for(pdf, problems);
     problems.raise();
   }
-  /// Returns the outputs outside of the command's folder.
+  /// Returns the outputs outside the command's output folder.
   [[nodiscard]] std::vector<Output> outputs() const {
     return pdf.empty() ? std::vector<Output>{} : std::vector<Output>{{pdf, "--pdf"}};
   }
-  /// Prints the finished page to --pdf, if given.
+  /// Prints the finished page to the file of --pdf, if given.
   void print(const std::filesystem::path& page) const {
     if (!pdf.empty()) print_pdf(page, pdf);
   }
 };
 
-/// Returns every file of one value of --records: "A+B" names two, and a .cfg includes its .dat.
+/// Returns all files of one value of --records: "A+B" names two files, and a .cfg implies its .dat.
 inline std::vector<std::filesystem::path> files_of(const std::string& word) {
   std::vector<std::filesystem::path> files;
   for (const auto& source : validate::record::Source(word).files)
