@@ -1,6 +1,7 @@
 """Packs the package of a build folder as a wheel: make_wheel.py PACKAGE VERSION FOLDER.
 
-The wheel holds the extension and the Python sources. System libraries stay those of Debian (docs/how-to/python.md).
+The wheel contains the extension and the Python sources, but no system libraries: it needs those of
+Debian (docs/how-to/python.md).
 """
 import pathlib
 import shutil

@@ -12,7 +12,7 @@
 namespace swingbank::python {
 namespace {
 
-/// Python's Diagnosis: the result with the model that was diagnosed.
+/// Python's Diagnosis: the diagnosed model and the result.
 struct Diagnosis {
   Plant model;
   diagnose::Diagnosis result;
@@ -46,7 +46,7 @@ py::dict probabilities(const Diagnosis& d) {
   return all;
 }
 
-/// Returns {"record": (times, values)} of an inferred input.
+/// Returns an inferred input as {"record": (times, values)}.
 py::dict inferred(const Diagnosis& d, const reduced::FreeInput& input) {
   py::dict all;
   for (std::size_t k = 0; k < input.fit.events.size() && k < d.result.events.size(); ++k) {

@@ -10,7 +10,7 @@ namespace {
 
 using sim::Effect, sim::Parameter, sim::State;
 
-/// An effect with the library that owns it.
+/// Effect with the library that owns it.
 struct OwnedEffect {
   sim::library::EffectLibrary library;
   const Effect* effect;

@@ -16,7 +16,8 @@ void raise(const InputError& error) {
   PyErr_SetObject(type.ptr(), type(problems).ptr());
 }
 
-/// Runs Python's own handler of Ctrl-C in the main thread, and raises KeyboardInterrupt if it raises nothing.
+/// Runs Python's handler of Ctrl-C in the main thread. Raises KeyboardInterrupt if the handler raises
+/// nothing.
 void raise_interrupt() {
   if (::gettid() == ::getpid()) PyErr_SetInterrupt();
   if (PyErr_CheckSignals() == 0) PyErr_SetNone(PyExc_KeyboardInterrupt);

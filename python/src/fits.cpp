@@ -17,7 +17,7 @@ namespace {
 
 using calibrate::Calibration, calibrate::WrongParameters, add::Addition;
 
-/// What a fit takes from Python.
+/// Arguments of a fit, as given in Python.
 struct FitArguments {
   std::vector<std::string> hold_out, fixed;
   double prior_sd = thresholds::parameters.prior_sd;

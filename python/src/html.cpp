@@ -18,7 +18,8 @@ constexpr const char *kGood = "#1b7a43", *kBad = "#b3401c", *kMeasured = "#1b273
 constexpr double kPlotWidth = 420;  // [px]
 constexpr std::size_t kMostPoints = 1500;
 
-/// Returns whether the error map of a channel holds noise alone; before judge() no bin has a bound.
+/// Returns whether no bin of a channel's error map exceeds its noise bound. Before judge(), the bins have no
+/// bounds, and the result is true.
 bool is_noise(const ChannelComparison& c) {
   for (const auto& row : c.map.rows) {
     if (row.all.exceeds()) return false;
@@ -37,7 +38,7 @@ std::string chip(const std::string& event, const ChannelComparison& c) {
       escape(c.name), c.whole.in_noise);
 }
 
-/// Points of a curve; of a long record every n-th sample.
+/// Returns the points of a curve: all samples, or every n-th sample of a long record.
 std::vector<std::pair<double, double>> points(const std::vector<double>& t, const std::vector<double>& y,
                                               double scale) {
   std::vector<std::pair<double, double>> all;

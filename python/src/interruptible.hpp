@@ -1,6 +1,6 @@
 #pragma once
-// Calls of the library without Python's global lock: other Python threads run meanwhile, and Ctrl-C ends the
-// work.
+// Calls of the library without Python's global interpreter lock: other Python threads run meanwhile, and
+// Ctrl-C ends the work.
 #include <pybind11/pybind11.h>
 
 #include <exception>
@@ -16,10 +16,11 @@ namespace swingbank::python {
 
 namespace py = pybind11;
 
-/// A Python function called from any thread. Its exception ends the work and is raised by without_lock().
+/// Python function that can be called from any thread. If it raises an exception, the work ends, and
+/// without_lock() raises the exception.
 class Callback {
  public:
-  /// Takes the function; None: nothing is called.
+  /// `function`: Python function, or None for no call.
   explicit Callback(py::object function) : function_(std::move(function)) {}
   Callback(const Callback&) = delete;
   Callback& operator=(const Callback&) = delete;
@@ -59,10 +60,10 @@ class Callback {
 /// Returns the library's progress function, which calls `callback(phase, item, done, total)`.
 validate::event::Progress progress_of(const std::shared_ptr<Callback>& callback);
 
-/// Functions that a call may use.
+/// Python functions that a call of the library may use.
 using Callbacks = std::vector<std::shared_ptr<Callback>>;
 
-/// Runs `work` without Python's lock. Throws Interrupted after Ctrl-C, and the exception of a callback.
+/// Runs `work` without Python's lock. Throws Interrupted after Ctrl-C, or the exception of a callback.
 template <class Work>
 auto without_lock(Work work, const Callbacks& callbacks = {}) {
   const InterruptOnSigint guard;

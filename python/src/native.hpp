@@ -1,6 +1,6 @@
 #pragma once
-// Shared parts of the extension `_native`: classes behind the Python objects, and one function for each
-// source that declares them.
+// Shared parts of the extension `_native`: the C++ classes of the Python objects, and one function per source
+// file that declares them.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -21,17 +21,17 @@ using namespace swingbank::validate;
 
 /// Python's Plant: an immutable plant model.
 using Plant = plant::PlantModel;
-/// Python's Record: an immutable record with its file and the warnings of its reader and its check.
+/// Python's Record: an immutable record with its file and the warnings from reading and checking it.
 struct Record {
   record::Record record;              ///< samples
-  std::vector<std::string> warnings;  ///< repairs on reading, and findings that do not refuse the record
-  std::string source;                 ///< file as given; empty: made from arrays
+  std::vector<std::string> warnings;  ///< repairs by the reader, and minor findings
+  std::string source;                 ///< file as given; empty if created from arrays
 };
 /// Python's Playback: one event played into a plant.
 struct Playback {
   std::shared_ptr<const Plant> plant;  ///< the plant that was played
   compare::EventComparison event;      ///< comparison of the measured and modelled channels
-  bool complete = false;  ///< only noise remains; of a Comparison's event: in all events together
+  bool complete = false;               ///< whether only noise remains; in a Comparison: in all events
 };
 /// Python's Comparison: several events played into a plant, with both verdicts.
 struct Comparison {
@@ -56,7 +56,7 @@ py::object from_json(const std::string& text);
 
 /// Reads and checks records of the plant: Record objects, paths, or a list of both.
 std::vector<Record> records_of(const Plant& plant, const py::object& records);
-/// Returns the samples alone; without the measured states if `power_only`.
+/// Returns the samples of the records; if `power_only`, without the measured states (speed, Efd, Ifd).
 std::vector<record::Record> samples_of(const std::vector<Record>& records, bool power_only);
 
 /// Plays one record.
@@ -73,10 +73,10 @@ std::string html_of(const Record& record);
 std::string html_of(const Playback& playback);
 /// Returns the notebook view of a comparison: both verdicts, and the view of each event.
 std::string html_of(const Comparison& comparison);
-/// Returns a verdict as one line of HTML: sentence in the colour of the result.
+/// Returns a verdict as one line of HTML. `good` determines the colour of the sentence.
 std::string verdict_html(const std::string& sentence, bool good);
 
-/// The class of Plant, which later files extend by their functions.
+/// Python class of Plant; the other source files add their functions to it.
 using PlantClass = py::class_<Plant, std::shared_ptr<Plant>>;
 void bind_errors(py::module_& module);                            ///< InputError and KeyboardInterrupt
 PlantClass bind_plant(py::module_& module);                       ///< Plant, Parameter

@@ -23,12 +23,12 @@ compare::CompareOptions options_of(const PlayOptions& asked) {
   return options;
 }
 
-/// Adds the warnings about a record to the notes of its playback, as the command does.
+/// Adds the warnings about a record to the notes of its playback, as `swingbank compare` does.
 void add_warnings(const Record& record, EventComparison& event) {
   event.notes.insert(event.notes.begin(), record.warnings.begin(), record.warnings.end());
 }
 
-/// One channel of a playback; shares the playback.
+/// Channel of a playback; shares ownership of the playback.
 struct Channel {
   std::shared_ptr<const Playback> of;
   std::size_t index;
@@ -69,7 +69,7 @@ std::vector<double> switching_times(const Playback& p) {
   return times;
 }
 
-/// Copies the events, as the reports take them by value.
+/// Returns copies of the events, because the reports take them by value.
 std::vector<EventComparison> events_of(const Comparison& c) {
   std::vector<EventComparison> events;
   for (const auto& e : c.events) events.push_back(e->event);

@@ -16,10 +16,10 @@ namespace {
 
 using Columns = std::map<std::string, std::vector<double>>;
 
-/// Names of the columns that are read, by quantity.
+/// Names of the columns to read, by quantity.
 using ColumnNames = std::map<std::string, std::string>;
 
-/// Python's Point: a measuring point of several units, and the plant of the tested one.
+/// Python's Point: a measuring point of several units, and the plant of the unit under test.
 struct Point {
   event::MeasuredPoint point;
   std::shared_ptr<Plant> plant;
@@ -40,7 +40,7 @@ std::vector<Record> read_files(const Plant& plant, const std::vector<std::string
   return all;
 }
 
-/// Returns the plant whose records are read from the named columns.
+/// Returns a copy of the plant whose records are read from the named columns.
 Plant with_columns(const Plant& plant, const ColumnNames& columns) {
   Plant changed = plant;
   for (const auto& [quantity, column] : columns) changed.reading.columns[quantity] = column;

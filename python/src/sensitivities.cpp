@@ -1,4 +1,4 @@
-// Python's Sensitivities: derivatives of the compared channels with respect to parameters along one event.
+// Python's Sensitivities: derivatives of the compared channels with respect to parameters, over one event.
 #include <fmt/format.h>
 
 #include "python/src/interruptible.hpp"

@@ -21,7 +21,7 @@ using sim::grid::EventTexts, sim::grid::Grid;
 using Path = std::filesystem::path;
 using Words = std::vector<std::string>;
 
-/// Samples of one simulated event with the names of their plants.
+/// Samples of one simulated event, with the names of the plants.
 struct Run {
   sim::reference::ReferenceRun samples;
   Words plants;
@@ -29,7 +29,7 @@ struct Run {
   std::vector<int> buses;     ///< bus numbers
 };
 
-/// Simulation options besides the event.
+/// Simulation options other than the event.
 struct RunOptions {
   double t_end = 15, rate = 120, tolerance = 1e-8;
   Words plants, channels;
@@ -60,7 +60,7 @@ std::shared_ptr<Grid> load(const Path& raw, const Path& dyr, const std::string& 
   });
 }
 
-/// Name of an event's argument, for messages.
+/// Returns the name of the argument that defines a part of an event, with its value, for messages.
 std::string place_of(sim::grid::EventPart part, const std::string& text) {
   static constexpr const char* kArguments[] = {"faults",     "trips",      "generator_trips", "load_steps",
                                                "vref_steps", "pref_steps", "fault_type",      "z0"};
@@ -180,7 +180,7 @@ std::string describe(const Run& r) {
                      r.samples.lost_by.empty() ? "" : " (" + r.samples.lost_by + ")");
 }
 
-/// Plot of one channel of every plant.
+/// Returns a plot of one channel of all plants.
 std::string html_of(const Run& r) {
   const std::vector<double> t = times(r);
   const Words names = channel_names(r);
