@@ -42,7 +42,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 /// Outcome of an item: done by this run, done by an earlier run, or failed.
 enum class Fate { done, was_there, failed };
-/// Returns an outcome with its text, as a message to rank 0.
+/// Returns an outcome and its text, packed as a message to rank 0.
 std::string packed(Fate fate, const std::string& text) {
   return std::to_string(static_cast<int>(fate)) + text;
 }
@@ -75,7 +75,8 @@ int share_cases(const mpi::items::Ranks& ranks, const Options& o, std::size_t co
   return ranks.from_first(counts.failed == 0 ? 0 : 1);
 }
 
-/// Generates one case of the plan. Returns an exception as a failed case, so that a long run continues.
+/// Generates one case of the plan. If this throws an exception, returns a failed case, so that a long run
+/// continues.
 std::string make_one(const Options& o, const blind::cases::BlindConfig& config,
                      const blind::cases::BlindSpec& spec, const std::string& name) {
   const fs::path folder = fs::path(o.out) / "cases" / name;
@@ -191,8 +192,8 @@ int blind_test(const mpi::items::Ranks& ranks, const Options& o) {
   return std::max(code, ranks.rank() == 0 ? score(o) : 0);
 }
 
-/// Runs the command on all ranks, with MPI if a launcher started it. Errors are agreed between the ranks, and
-/// rank 0 prints them.
+/// Runs the command on all ranks, with MPI if a launcher started it. All ranks end with the same error, which
+/// rank 0 prints.
 int on_ranks(int argc, char** argv, const Options& o) {
   std::optional<mpi::ranks::MpiSession> session;
   std::unique_ptr<mpi::items::Ranks> of_run = std::make_unique<mpi::items::OneProcess>();

@@ -1,9 +1,9 @@
 // swingbank night-plan EXPERIMENT...: computes the cost of a preset from measured rates, and scales the
 // preset to a number of hours.
 //
-// Events and epochs of every network each grow with the square root of the work, so that the number of
-// gradient samples is proportional to the work. Sizes have lower limits (a fold needs rows for its score), so
-// a budget of minutes may be exceeded; the plan then prints this.
+// The numbers of events and of epochs each grow with the square root of the work, so that the number of
+// gradient samples is proportional to the work. Both have lower limits (a fold needs rows for its score). A
+// budget of minutes may therefore be exceeded; the plan then says so.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -47,7 +47,8 @@ struct Plan {
       for (const auto& part : parts(e, preset, {preset, work})) sum += part.core_seconds;
     return sum;
   }
-  /// Returns the factor of work at which the preset takes `wanted` core-seconds, by bisection; at least 1e-8.
+  /// Computes by bisection the factor of the work at which the preset takes `wanted` core-seconds; at least
+  /// 1e-8.
   [[nodiscard]] double work_for(const std::string& preset, double wanted) const {
     double low = 1e-8, high = 1e6;
     for (int i = 0; i < 100; ++i) {
@@ -62,7 +63,7 @@ std::string shown(double seconds) {
   return seconds < 7200 ? fmt::format("{:.0f} s", seconds) : fmt::format("{:.1f} h", seconds / 3600);
 }
 
-/// Prints a line per part. Returns the total time [core-s].
+/// Prints one line per part of the plan. Returns the total time [core-s].
 double print(const Plan& plan, const std::string& preset, const Scale& to) {
   double sum = 0.0;
   fmt::print("| table | part | runs | rows of a run | epochs | core time |\n|---|---|---:|---:|---:|---:|\n");

@@ -2,9 +2,9 @@
 // noise.
 //
 // FOLDER contains one folder per nightly run, YYYY-MM-DD/<experiment>/results/*.json
-// (docs/reference/formats.md). A cell is one (table, network, noise level, generator) at one preset and
-// dataset config. Its score is s = ln(MSE / baseline), the mean over the run's seeds. Every run trains with
-// other seeds, so the earlier runs show the random variation of a score:
+// (docs/reference/formats.md). A cell is a result of one table, network, noise level and generator, for one
+// preset and dataset config. Its score is s = ln(MSE / baseline), averaged over the run's seeds. Every run
+// trains with new seeds, so the earlier runs show the random variation of a score:
 //   residual of a run = s - median of the cell's earlier runs
 //   noise of a table, network and level = 1.4826 * median(|residual| * sqrt(n / (n - 1)))
 //     pooled over its cells, because one cell has too few runs; at least 1 %
@@ -37,7 +37,7 @@ using swingbank::Problem;
 using swingbank::Problems;
 
 constexpr std::size_t kRunsNeeded = 3;
-constexpr double kLeastRelativeNoise = 0.01;  // a change of less than 3 % is irrelevant even without noise
+constexpr double kLeastRelativeNoise = 0.01;  // a change below 3 % is thus never reported
 
 struct Cell {
   std::string table, network, noise, generator, preset, config;
@@ -118,7 +118,7 @@ NightlyRuns read_runs(const fs::path& folder) {
   return runs;
 }
 
-/// Returns the changes of one run against all earlier runs, in the order of the cells.
+/// Returns the changes of one run relative to all earlier runs, in the order of the cells.
 std::vector<Change> changes_of(const std::string& date, const NightlyRuns& runs) {
   std::map<Cell, std::vector<double>> before;
   std::map<Cell, std::set<std::string>> makers;  // software and kernels of the last run

@@ -15,11 +15,11 @@
 namespace swingbank::research {
 namespace {
 
-/// Keys that grow with the square root of the work, and their lower limits. 120 draws are a dozen rows for
-/// each of ten generators; fewer would leave a fold without test rows.
+/// Keys that grow with the square root of the work, and their lower limits. 120 draws give a dozen rows for
+/// each of ten generators; with fewer draws, a fold might have no test rows.
 const std::map<std::string, std::uint64_t> kLeast = {
     {"draws", 120}, {"training_draws", 120}, {"epochs", 1}, {"patience", 1}, {"test_rows", 10}};
-constexpr double kOnlyJudged = 0.25;  ///< fixed time of a run without training, relative to one with training
+constexpr double kOnlyJudged = 0.25;  ///< fixed time of a run without training, relative to a training run
 constexpr double kNoiseDrawn = 1.5;   ///< time of a training sample with new noise, relative to fixed noise
 constexpr double kSplitTrain = 0.6, kSplitTest = 0.2;
 
@@ -88,7 +88,7 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
   double of_rows = 0.0;  // training time of one run [core-s]
   for (const double noise : judged.noise) {
     if (network == "floor" && noise == 0.0) continue;
-    const bool trains = !t.noise_levels || noise == judged.noise.front();  // one network for all levels
+    const bool trains = !t.noise_levels || noise == judged.noise.front();  // one network serves all levels
     double seconds = cost.run * (trains ? 1.0 : kOnlyJudged);
     if (cost.sample > 0) {
       const double longer = cost.length > 0 ? series_length(p.input.at(network), rate) / cost.length : 1.0;
@@ -102,7 +102,7 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
     }
     part.runs += static_cast<std::size_t>(rows.folds);
     part.core_seconds += rows.folds * seconds;
-    if (!t.corrects.empty())  // the estimator that it corrects: all rows, once for all folds
+    if (!t.corrects.empty())  // the method whose estimates it corrects: all rows, once for all folds
       part.core_seconds += rows.all(t) * row(rate_of(rates, t.corrects), noise);
   }
   if (part.epochs > 0)

@@ -1,5 +1,5 @@
 #pragma once
-// Cost of an experiment's runs from measured rates, and scaling of a preset to a given cost.
+// Cost of an experiment's runs from measured times, and scaling of a preset to a given cost.
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -13,7 +13,8 @@ namespace swingbank::research {
 /// Time that a network needs on one core, from research/rates.toml.
 struct NetworkRate {
   double sample = 0.0;  ///< training time per sample [s]
-  /// Samples of the measured time series; the time is proportional to it. 0: the time does not depend on it.
+  /// Length of the time series with which `sample` was measured; the time is proportional to it. 0: the time
+  /// does not depend on it.
   double length = 0.0;
   double row = 0.0;        ///< time per evaluated row, for estimators without training [s]
   double noisy_row = 0.0;  ///< the same for rows with noise [s]
@@ -23,7 +24,7 @@ struct NetworkRate {
 struct Rates {
   double event = 0.0;                    ///< time per event with one row [s]
   double row_of_all = 0.0;               ///< time per row of an event that records every generator [s]
-  std::map<std::string, double> stable;  ///< share of events that give rows, by name of the dataset's config
+  std::map<std::string, double> stable;  ///< share of stable events, by name of the dataset's config
   std::map<std::string, NetworkRate> networks;
 };
 /// Reads research/rates.toml. Throws InputError with every problem of the file.
@@ -37,20 +38,20 @@ struct Scale {
 /// Returns the preset scaled to another amount of work.
 train::loop::Preset scaled(const train::loop::Preset& preset, const Scale& to);
 
-/// One line of a plan.
+/// Part of a plan: one line of its table.
 struct Part {
   std::string what;      ///< "events", or a network
   std::size_t runs = 0;  ///< noise levels times folds
-  double rows = 0;       ///< rows that each run trains on or evaluates, or that are generated
+  double rows = 0;       ///< rows per run (trained on or evaluated), or generated rows
   std::size_t epochs = 0;
   double core_seconds = 0;  ///< core time of all runs [s]
-  bool simulated = false;   ///< whether this part is simulation, not training or evaluation
+  bool simulated = false;   ///< whether this part is a simulation of events
 };
 /// Returns the parts of a preset with their cost. Throws InputError for a network without a rate.
 std::vector<Part> work_of(const train::loop::Experiment& experiment, const train::loop::Preset& preset,
                           const Rates& rates);
 
-/// Writes the experiment's file with only its preset `from`, scaled. Throws InputError if the file gives its
+/// Writes the experiment's file with the preset `from` only, scaled. Throws InputError if the file states its
 /// sizes in a form that cannot be replaced.
 void write_scaled(const train::loop::Experiment& experiment, const std::string& from, const Scale& to,
                   const std::filesystem::path& file);

@@ -14,18 +14,18 @@ namespace {
 
 using Scales = std::vector<std::optional<double>>;
 
-constexpr int kAttempts = 60;    ///< largest number of systems drawn for a case
-constexpr int kEventTries = 12;  ///< largest number of draws of one event
-constexpr double kDip = 0.05;    ///< least voltage dip of a fault at the plant [pu]
+constexpr int kAttempts = 60;    ///< most systems drawn for a case
+constexpr int kEventTries = 12;  ///< most draws of one event
+constexpr double kDip = 0.05;    ///< smallest voltage dip at the plant during a fault [pu]
 constexpr double kLeftByAFault =
-    0.02;  ///< least voltage during a fault, below which the angle is undefined [pu]
-constexpr double kUntripped = 0.02;  ///< largest speed deviation, above which a unit would trip [pu]
-constexpr double kSizeMet = 0.1;     ///< relative tolerance of a size
-constexpr int kSizeTries = 8;        ///< largest number of simulations in the search for a size
+    0.02;                            ///< lowest voltage during a fault; below it the angle is undefined [pu]
+constexpr double kUntripped = 0.02;  ///< largest speed deviation; above it a unit would trip [pu]
+constexpr double kSizeMet = 0.1;     ///< relative tolerance of the requested size
+constexpr int kSizeTries = 8;        ///< most simulations in the search for a size
 
 constexpr double kHuge = 1e300;  ///< size of an effect that cannot be simulated
 
-/// Returns whether a kind's path changes a code, which has no intermediate values.
+/// Returns whether a kind's path changes a code. A code has no intermediate values.
 bool turns_a_switch(const BlindKind& kind) {
   return std::ranges::any_of(kind.path, [](const BlindPath& path) {
     const sim::Effect* effect = blind_effect(path.target);
@@ -34,7 +34,7 @@ bool turns_a_switch(const BlindKind& kind) {
   });
 }
 
-/// Thrown for a draw that cannot be simulated; another draw follows.
+/// Exception for a random draw that is unsuitable; another draw follows.
 struct Unstable {};
 
 class Maker {
@@ -77,7 +77,7 @@ class Maker {
   [[nodiscard]] const sim::plant::Plant& target(const sim::grid::Grid& grid) const {
     return grid.plants[static_cast<std::size_t>(world_.plant())];
   }
-  /// Returns the second unit in the record; nullptr: none.
+  /// Returns the second unit in the record; nullptr if there is none.
   [[nodiscard]] const sim::plant::Plant* other(const sim::grid::Grid& grid) const {
     if (world_.recorded().size() < 2) return nullptr;
     return &grid.plants[static_cast<std::size_t>(world_.recorded()[1])];
@@ -87,7 +87,7 @@ class Maker {
     const sim::plant::Plant* beside = other(world_.plain());
     return target(world_.plain()).mva + (beside ? beside->mva : 0.0);
   }
-  /// Simulates one event. Throws Unstable if synchronism is lost or a speed deviates by kUntripped.
+  /// Simulates one event. Throws Unstable if synchronism is lost or a speed deviation reaches kUntripped.
   [[nodiscard]] sim::reference::ReferenceRun run(const sim::grid::Grid& grid, const BlindEvent& event) const {
     sim::reference::ReferenceRun fine = simulate_fine(grid, world_.recorded(), event, config_);
     if (fine.outcome != sim::Outcome::stable) throw Unstable{};
@@ -96,7 +96,7 @@ class Maker {
         if (!(std::abs(fine.at(static_cast<int>(u), 4)[k]) < kUntripped)) throw Unstable{};
     return fine;
   }
-  /// Returns the records of the target, and of `beside` together with it, without noise.
+  /// Returns the noise-free records of the target, or of the target and `beside` together.
   [[nodiscard]] std::vector<validate::record::Record> records(
       const sim::grid::Grid& grid, const sim::plant::Plant* beside = nullptr) const {
     std::vector<validate::record::Record> all;
@@ -131,8 +131,8 @@ class Maker {
     }
     throw Unstable{};
   }
-  /// Searches for the scale at which each effect has its wanted size. The size grows monotonically with the
-  /// scale, almost in proportion for a linear path.
+  /// Searches for the scale at which each effect has its requested size. The size grows monotonically with
+  /// the scale, and almost in proportion if the path is linear.
   void choose_sizes() {
     if (spec_.hidden.empty()) return;
     const sim::grid::Grid& plain = world_.plain();
@@ -156,7 +156,8 @@ class Maker {
   }
   void seek(const BlindSize& size, std::size_t k, Scales& alone, BlindTruth& truth) {
     double low = 0.0, high = 1.0, low_left = 0.0, high_left = kHuge, scale = 1.0, best = kHuge;
-    const bool logarithmic = truth.kind->logarithmic && !truth.kind->value;  // a correct value has size 0
+    // A correct value has the size 0, which has no logarithm.
+    const bool logarithmic = truth.kind->logarithmic && !truth.kind->value;
     for (int i = 0; i < kSizeTries; ++i) {
       alone[k] = scale;
       const auto [left, visible] = sizes(size, alone, *truth.kind);
@@ -176,14 +177,14 @@ class Maker {
     // An effect below its detection limit at full size is not observable in these events.
     if (best == kHuge || truth.left < truth.kind->limit) throw Unstable{};
   }
-  /// Returns the sizes after and before the refit at these scales; kHuge if the grid is unstable.
+  /// Returns the sizes after and before the refit at these scales. Both are kHuge if the grid is unstable.
   [[nodiscard]] std::pair<double, double> sizes(const BlindSize& size, const Scales& scales,
                                                 const BlindKind& kind) const {
     try {
       const std::vector<validate::record::Record> with = records(world_.grid(scales));
       const std::span<const BlindPath> but(kind.path);
       return {size.left(with, kind.value ? but : but.first(0)), size.visible(with)};
-    } catch (const Unstable&) {  // too strong: above any wanted size
+    } catch (const Unstable&) {  // the effect is too strong: above any requested size
       return {kHuge, kHuge};
     }
   }
@@ -197,8 +198,8 @@ class Maker {
       guess = low + (high - low) * std::log(wanted / low_left) / std::log(high_left / low_left);
     return guess > low && guess < high ? guess : middle;
   }
-  /// Draws the owner's model: no hidden effect, every machine parameter wrong by 10 to 20 % (or as
-  /// configured).
+  /// Draws the owner's model: it lacks the hidden effects, and every machine parameter is wrong, by default
+  /// by 10 to 20 %.
   void draw_model() {
     made_.model = target(world_.plain());
     if (!mislead(made_.model.machine, config_.wrong, draw_)) throw Unstable{};

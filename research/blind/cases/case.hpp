@@ -1,7 +1,7 @@
 #pragma once
 // Blind cases: records of a plant with an effect that its model file lacks. They are simulated independently
 // of the diagnosis: by IDA on the unreduced grid, at a sampling rate that no other integrator here uses, with
-// switching times off the sampling instants. docs/reference/blind-test.md describes the files.
+// switching times between the samples. docs/reference/blind-test.md describes the files.
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -16,20 +16,20 @@
 
 namespace swingbank::research::blind::cases {
 
-/// Specification of one case; everything else is drawn from (seed, index).
+/// Specification of one case. Everything else is drawn at random from (seed, index).
 struct BlindSpec {
   std::uint64_t seed = 0;
-  std::uint64_t index = 0;                 ///< of the case within its run
-  std::vector<const BlindKind*> hidden{};  ///< empty: only parameters are wrong; two: both at once
-  double size = 0;                         ///< wanted size in detection limits; 0: drawn
+  std::uint64_t index = 0;                 ///< index of the case in its run
+  std::vector<const BlindKind*> hidden{};  ///< hidden kinds, at most two; empty: only parameters are wrong
+  double size = 0;                         ///< requested size [detection limits]; 0: drawn
 };
 
 /// Event of a case.
 struct BlindEvent {
   std::string text;                ///< description with units
-  sim::network::Event event;       ///< with indices of the grid it was drawn for
+  sim::network::Event event;       ///< event; its indices are those of the grid
   std::vector<double> switchings;  ///< switching times within the record [s]
-  double seconds = 0;              ///< simulated duration; recorded unless the record starts late [s]
+  double seconds = 0;              ///< simulated duration [s]; the record may start later
 };
 
 /// Hidden effect with its size.
@@ -37,16 +37,16 @@ struct BlindTruth {
   const BlindKind* kind = nullptr;
   double scale = 0;   ///< position on the path: 0 null value, 1 full
   double wanted = 0;  ///< requested size [noise]
-  double left = 0;    ///< size reached: norm of the residual of P and Q of all events after a linear refit of
-                      ///< the machine's parameters and the switching times [noise]
+  double left = 0;    ///< actual size: norm of the residual of P and Q in all events, after a linear refit of
+                      ///< the machine's parameters, the switching times and the initial states [noise]
   double visible = 0;  ///< size before that refit [noise]
 };
 
 /// Case with its truth.
 struct BlindCase {
   BlindSpec spec;
-  int attempts = 0;            ///< draws until every event was stable
-  std::string maker = "grid";  ///< simulator: this one, or "second" (tests/blind)
+  int attempts = 0;            ///< number of draws until every event was stable
+  std::string maker = "grid";  ///< simulator: "grid" is this one, "second" that of tests/blind
   std::string grid_name, plant_name;
   sim::Conventions conventions;
   sim::plant::Plant truth,
@@ -61,15 +61,15 @@ struct BlindCase {
   bool pmu_filter = false, channels = false, controlled = false;
 };
 
-/// Draws and simulates one case. Throws InputError if none of 60 draws is stable.
+/// Draws and simulates one case. Throws InputError if none of 60 draws is suitable.
 BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec);
 
-/// Writes the truth to the file `truth`, then model.toml and event1.csv ... to `folder`, which appears
-/// complete or not at all.
+/// Writes the truth to the file `truth`, then model.toml and event1.csv ... to `folder`. The folder gets its
+/// name only when it is complete.
 void write_blind_case(const BlindCase& made, const BlindConfig& config, const std::string& name,
                       const std::filesystem::path& folder, const std::filesystem::path& truth);
 
-/// Record as CSV with the columns of validate/record/README.md.
+/// Returns a record as CSV with the columns of validate/record/README.md.
 std::string record_csv(const validate::record::Record& record);
 
 }  // namespace swingbank::research::blind::cases

@@ -13,10 +13,10 @@ namespace swingbank::research::blind::cases {
 namespace {
 
 constexpr double kStair = 0.025;     ///< duration of one step of the load variation [s]
-constexpr double kOffset = 0.0137;   ///< start of the steps, off the samples of any rate [s]
+constexpr double kOffset = 0.0137;   ///< start of the steps, between the samples at any rate [s]
 constexpr double kMemory = 1.0;      ///< time constant of the ambient variation [s]
-constexpr double kSmooth = 0.2;      ///< time constant of its smoothing, so that steps stay undetected [s]
-constexpr double kReactive = 0.2;    ///< change of Q / change of P, as for a load step
+constexpr double kSmooth = 0.2;      ///< time constant of its smoothing; prevents detectable steps [s]
+constexpr double kReactive = 0.2;    ///< ratio of the changes of Q and P, as in a load step
 constexpr double kDipStart = 1.5;    ///< start of a frequency dip [s]
 constexpr double kAfterDip = 5.0;    ///< duration of the record after the dip [s]
 constexpr double kPerMinute = 60.0;  ///< [s]

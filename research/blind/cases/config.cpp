@@ -22,7 +22,7 @@ bool parse(std::string_view text, double& value) {
   return read.ec == std::errc{} && read.ptr == text.data() + text.size();
 }
 
-/// Reads "TARGET.PARAM=NEUTRAL:FULL".
+/// Reads a path: "TARGET.PARAM=NEUTRAL:FULL".
 BlindPath read_path(Config& config, const std::string& key, const std::string& text) {
   const auto dot = text.find('.'), equal = text.find('=', dot), colon = text.find(':', equal);
   BlindPath path{};
@@ -46,7 +46,8 @@ void check_blocks(Config& config, const std::string& key, const std::vector<std:
   }
 }
 
-/// Checks blocks of one slot, because an effect of another slot would be placed in its own slot silently.
+/// Checks that all blocks have the slot `slot`: an effect of another slot would silently be placed in that
+/// slot.
 void check_slot(Config& config, const std::string& key, const std::vector<std::string>& texts,
                 sim::Slot slot) {
   check_blocks(config, key, texts);
@@ -59,7 +60,7 @@ void check_slot(Config& config, const std::string& key, const std::vector<std::s
           "choose an effect of that slot; swingbank effects lists them");
 }
 
-/// Checks the controls against each machine that may be drawn.
+/// Checks that the controls are compatible with each machine that may be drawn.
 void check_controls(Config& config, const BlindConditions& c) {
   check_blocks(config, "conditions.controls", c.controls);
   for (const auto& text : c.controls)
@@ -122,7 +123,7 @@ BlindConditions read_conditions(Config& config) {
   const auto share = [&](const char* name) {
     return config.optional<double>(std::string("conditions.") + name, 0.0, {0.0, 1.0});
   };
-  // required if its share is above 0
+  // the interval is required if its share is above 0
   const auto between = [&](const char* name, double how_often, const Range& range) {
     const std::string key = std::string("conditions.") + name;
     return how_often > 0 || config.has(key) ? config.interval(key, range) : std::pair(0.0, 0.0);

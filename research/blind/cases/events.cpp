@@ -1,5 +1,5 @@
-// Random events of a blind case: load steps, faults and frequency events, switched between the sampling
-// times.
+// Random events of a blind case: load steps, faults and losses of generators, with switching times between
+// the samples.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 namespace swingbank::research::blind::cases {
 namespace {
 
-/// Draws a time that is no sampling time at 30, 60 or 120/s, nor of the fine simulation of cases.toml.
+/// Draws a time that is not a sampling time at 30, 60 or 120/s, nor one of the fine simulation of cases.toml.
 double off_grid(double low, double high, BlindDraw& draw) {
   constexpr double kFinest = 960.0 * 4,
-                   kAway = 0.05;  // least distance as a share of a quarter of the fine step
+                   kAway = 0.05;  // smallest distance, as a share of a quarter of the fine step
   for (;;) {
     const double t = draw.uniform(low, high), x = t * kFinest;
     if (std::abs(x - std::round(x)) > kAway) return t;
@@ -48,7 +48,7 @@ BlindEvent draw_fault(const BlindWorld& world, BlindDraw& draw) {
     bus = static_cast<int>(draw.below(network.buses.size()));
   } while (
       bus == target(world).bus ||
-      network.buses[static_cast<std::size_t>(bus)].is_star());  // V = 0 at the plant would leave no angle
+      network.buses[static_cast<std::size_t>(bus)].is_star());  // V = 0 at the plant: its angle is undefined
   BlindEvent event;
   sim::network::BusFault fault{bus, off_grid(1.5, 2.0, draw), 0.0, {}};
   fault.t_off = fault.t_on + off_grid(0.05, 0.15, draw);

@@ -1,4 +1,4 @@
-// Files of a blind case: its folder with model and records, and its truth.
+// Files of a blind case: the folder with model and records, and the truth.
 #include <fmt/format.h>
 
 #include "base/write_file.hpp"
@@ -80,7 +80,7 @@ std::string model_file(const sim::plant::Plant& plant, const std::string& name,
   return validate::plant::plant_text(model, {what});
 }
 
-/// File of both units at the point of common coupling, as `--point` reads it (configs/plants/README.md).
+/// Returns the file of both units at the measuring point, as `--point` reads it (configs/plants/README.md).
 std::string point_file(const BlindCase& made) {
   const double share = made.other->mva / (made.other->mva + made.model.mva);
   return fmt::format(

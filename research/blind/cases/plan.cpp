@@ -23,7 +23,7 @@ std::vector<const BlindKind*> of(const BlindConfig& config, bool listed) {
   return list;
 }
 
-/// Assigns kinds in turn, each class in its own random order.
+/// Assigns the kinds of each class (listed, unlisted) in turn, in a random order.
 class Dealer {
  public:
   Dealer(const BlindConfig& config, BlindDraw& draw)
@@ -63,7 +63,7 @@ bool is_class(const std::string& word) {
   return word == "none" || word == "listed" || word == "odd" || word == "pairs";
 }
 
-/// "A" or "A+B".
+/// Returns the kinds that a word names: "A" or "A+B".
 Hidden named(const BlindConfig& config, const std::string& word, Problems& problems) {
   Hidden hidden;
   std::istringstream parts(word);
@@ -125,7 +125,7 @@ void settle_plan(const BlindPlan& plan, const BlindConfig& config, const std::fi
   if (!std::filesystem::exists(file)) {
     try {
       write_file(file, text);
-    } catch (const InputError&) {  // another part may have written it meanwhile; compared below
+    } catch (const InputError&) {  // another part may have written the file meanwhile; it is compared below
       if (!std::filesystem::exists(file)) throw;
     }
   }

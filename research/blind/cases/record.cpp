@@ -12,13 +12,14 @@
 namespace swingbank::research::blind::cases {
 namespace {
 
-/// Largest look-ahead of the filters: two cycles for class P, half the window of class M at 30/s [s].
+/// Largest look-ahead of the filters [s]: two cycles for class P; half the window at 30/s for class M.
 constexpr double kAhead = 0.05, kAheadM = 0.2;
 
 enum FineChannel { kFineV, kFineTheta, kFineP, kFineQ, kFineSpeed, kFineIfd };
 
 /// Applies the reference class P filter of IEEE Std C37.118.1-2011, annex C: triangular over two cycles of
-/// nominal frequency, w(k) = 1 - 2|k|/(N + 2), normalised. The end values extend the series.
+/// nominal frequency, w(k) = 1 - 2|k|/(N + 2), normalised. The first and the last value are repeated beyond
+/// the ends of the series.
 std::vector<Complex> p_class(const std::vector<Complex>& x, double rate, double frequency) {
   const int half = static_cast<int>(std::lround(rate / frequency)) - 1;
   const int last = static_cast<int>(x.size()) - 1;
@@ -45,7 +46,7 @@ void m_class(sim::Phasors& p, double reports) {
   filter.measure(values.data(), 0, p);
 }
 
-/// Returns the power of all recorded units on the base of the first [pu].
+/// Returns the total power of all recorded units [pu on the base of the first].
 Complex power(const sim::reference::ReferenceRun& fine, std::span<const double> mva, int k) {
   Complex sum = 0;
   for (std::size_t u = 0; u < mva.size(); ++u) {

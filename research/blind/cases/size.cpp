@@ -11,9 +11,9 @@
 namespace swingbank::research::blind::cases {
 namespace {
 
-constexpr double kRunTolerance = 1e-7;   ///< tolerance of the integration: a thousandth of the smallest noise
+constexpr double kRunTolerance = 1e-7;   ///< integration tolerance: a thousandth of the smallest noise
 constexpr double kSwitchingUnit = 2e-4;  ///< scale of a switching time [s]
-constexpr Eigen::Index kStates = 4;      ///< number of start variables of an event: P, Q, angle, speed
+constexpr Eigen::Index kStates = 4;      ///< number of initial values of an event: P, Q, angle, speed
 
 /// Returns P and Q of the compared samples, interleaved.
 Eigen::VectorXd interleaved(const validate::event::FitEvent& e, const std::vector<double>& P,
@@ -28,7 +28,7 @@ Eigen::VectorXd interleaved(const validate::event::FitEvent& e, const std::vecto
   return all;
 }
 
-/// Marks samples next to a switching. A current with 1 ms of delay affects one of these only, where a
+/// Marks the samples next to a switching. A measurement delay of 1 ms affects only one of these; there a
 /// diagnosis cannot distinguish it from a shifted switching time.
 std::vector<char> beside_switchings(const validate::record::Record& record,
                                     const std::vector<double>& switchings) {
@@ -49,7 +49,8 @@ validate::event::FitEvent prepared(const validate::record::Record& record, const
   return e;
 }
 
-/// Returns the noise of an event for these standard deviations of P and Q, and of V and theta.
+/// Returns the residual noise of an event. `power`: standard deviation of P and Q; `voltage`: that of V and
+/// theta.
 validate::noise::EventNoise noise_of(const sim::plant::PlantUnderTest& tested,
                                      const validate::event::FitEvent& e, double power, double voltage) {
   const validate::playin::VoltageCurve curve(e.record, e.switchings);
@@ -108,7 +109,7 @@ validate::playin::Response BlindSize::response(
 }
 
 Eigen::VectorXd BlindSize::residual(std::size_t event, const validate::record::Record& record) const {
-  // less the residual of interpolation and filter without the effect
+  // subtracts the residual without the effect, which interpolation and filter cause
   const validate::playin::Response r = response(event, record, {});
   return interleaved(prepared_[event], record.P, record.Q) -
          interleaved(prepared_[event], r.of(validate::playin::Output::P), r.of(validate::playin::Output::Q)) -

@@ -1,5 +1,5 @@
-// Unlisted effects, which no hypothesis of the list covers. They satisfy the effect interface but are never
-// registered, and exist only for the scalar types of the reference integrator.
+// Unlisted disturbances, which no hypothesis covers. They have the interface of an effect but are never
+// registered, and are compiled only for the scalar types of the reference integrator.
 #include <fmt/format.h>
 
 #include <array>
@@ -15,7 +15,7 @@ using namespace sim;
 
 constexpr double kLongestRecord = 130.0;  ///< longest record [s]
 
-/// Base of the unlisted effects: no checks beyond the parameters' ranges.
+/// Base of the unlisted disturbances: only the ranges of the parameters are checked.
 struct Unlisted {
   static void check(const void*, const double*, const std::string&, Problems&) {}
   static std::string_view unphysical(const double*) { return ""; }
@@ -63,7 +63,7 @@ struct RandomWalk : Unlisted {
     for (double t = p[start]; t < kLongestRecord; t += p[step]) all.push_back(t);
     return all;
   }
-  /// Returns a pseudo-random change in [-1, 1) of a walk at a knot.
+  /// Returns the pseudo-random change in [-1, 1) of the walk number `walk` at a knot.
   static double change(double walk, int knot) {
     const double x = std::sin(12.9898 * (walk + 1.0) + 78.233 * knot) * 43758.5453;
     return 2.0 * (x - std::floor(x)) - 1.0;

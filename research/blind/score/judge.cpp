@@ -21,7 +21,7 @@ std::vector<fs::path> event_files(const fs::path& folder) {
   return files;
 }
 
-/// Returns all evidences, so that the probabilities can be recomputed without the records.
+/// Returns the evidence of all hypotheses, so that the probabilities can be recomputed without the records.
 nlohmann::json basis_of(const validate::diagnose::Diagnosis& d) {
   const auto input = [&](const validate::reduced::FreeInput& m) {
     return nlohmann::json{{"evidence", m.evidence},

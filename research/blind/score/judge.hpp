@@ -1,5 +1,5 @@
 #pragma once
-// Swingbank's diagnosis as the judge of a blind test.
+// Judge of a blind test that uses Swingbank's diagnosis.
 #include <filesystem>
 #include <vector>
 
@@ -15,10 +15,12 @@ struct SeenCase {
   validate::plant::PlantModel model;
   std::vector<validate::record::Record> records;
 };
-/// Reads model.toml, point.toml if there, and every *.csv of a case folder. Throws InputError.
+/// Reads model.toml, point.toml if it exists, and every *.csv of a case folder. Throws InputError on invalid
+/// files.
 SeenCase read_seen_case(const std::filesystem::path& folder);
 
-/// Judge that diagnoses a case folder. If the diagnosis throws InputError, the verdict is `refused`.
+/// Returns a judge that diagnoses a case folder. If the diagnosis throws InputError, the verdict is
+/// `refused`.
 BlindJudge diagnosis_judge(const validate::diagnose::DiagnoseOptions& options = {});
 
 }  // namespace swingbank::research::blind::score

@@ -16,7 +16,7 @@ constexpr std::size_t kBins = std::size(kReliabilityEdges) - 1;
 constexpr int kResampled = 2000;
 constexpr double kBeyond95 = 0.025;  ///< probability outside a 95 % interval on either side
 
-/// Returns the index of the bin; kBins: below the first edge.
+/// Returns the index of the bin of a probability; kBins if it is below the first edge.
 std::size_t bin_of(double p) {
   if (p < kReliabilityEdges[0]) return kBins;
   std::size_t bin = 0;
@@ -54,7 +54,7 @@ void resample(const std::vector<First>& firsts, Reliability& r) {
   r.error_high = errors[static_cast<std::size_t>((1 - kBeyond95) * kResampled)];
 }
 
-/// Returns the number of explanations in the 95 % set.
+/// Returns the number of explanations in the 95 % set: the most probable ones with a total of at least 95 %.
 std::size_t set_size(const Forecast& f) {
   double sum = 0;
   std::size_t n = 0;

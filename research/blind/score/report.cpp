@@ -73,7 +73,7 @@ std::string matrix(const BlindScore& score) {
   return text;
 }
 
-/// Table of hit rates per recording condition; empty without conditions.
+/// Returns the table of hit rates by field condition; empty without conditions.
 std::string conditions(const BlindScore& score) {
   if (score.by_condition.empty()) return "";
   std::string text =

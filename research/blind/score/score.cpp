@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr const char *kPowerOnly = "P, Q only", *kWithChannels = "with speed, Ifd";
-constexpr double kFrom = 2.0;  ///< least size that counts for the rates [detection limits]
+constexpr double kFrom = 2.0;  ///< smallest size that counts in the rates [detection limits]
 
 bool same(const std::string& a, const std::string& b) {
   return std::ranges::equal(
@@ -183,7 +183,7 @@ Forecast ScoredCase::forecast() const {
            std::ranges::all_of(accepted_names, [&](const auto& a) { return share(a, said); });
   };
   std::vector<std::pair<double, char>> said;
-  double nothing = 0;  // includes wrong parameters, which are no missing effect
+  double nothing = 0;  // includes wrong parameters, because these are no missing effect
   for (const auto& [explanation, probability] : verdict.probabilities)
     if (explanation.starts_with(validate::hypothesis::kNothingMissing))
       nothing += probability;

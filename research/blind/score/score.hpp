@@ -1,5 +1,5 @@
 #pragma once
-// Score of a blind run: hit rates of the verdicts against the truth, with 95 % intervals.
+// Score of a blind run: hit rates of the verdicts, with 95 % intervals.
 #include <filesystem>
 #include <map>
 #include <string>
@@ -17,41 +17,41 @@ struct ScoredCase {
   std::string name;
   std::vector<std::string> kinds, sides;                 ///< of the hidden effects
   std::vector<std::vector<std::string>> accepted_names;  ///< accepted names per hidden effect
-  bool listed = true;                                    ///< every hidden effect is in the list of hypotheses
-  bool value = false;                   ///< nothing is missing, but a value of the model is wrong
+  bool listed = true;                                    ///< whether hypotheses cover every hidden effect
+  bool value = false;                   ///< whether nothing is missing but a value of the model is wrong
   double size = 0;                      ///< smallest size of the hidden effects [detection limits]
-  bool channels = false;                ///< speed and Ifd are recorded
+  bool channels = false;                ///< whether speed and Ifd are recorded
   std::vector<std::string> conditions;  ///< names of the recording conditions
   BlindVerdict verdict;
 
-  [[nodiscard]] bool first_right() const;      ///< the first effect named is a hidden one
-  [[nodiscard]] bool right_or_in_set() const;  ///< first_right(), or the confusion set contains it
-  [[nodiscard]] bool all_named() const;        ///< every hidden effect is named
-  [[nodiscard]] bool all_in_set() const;       ///< all_named(), or one set entry ("A + B") names every one
+  [[nodiscard]] bool first_right() const;      ///< whether the first named effect is a hidden one
+  [[nodiscard]] bool right_or_in_set() const;  ///< first_right(), or the set contains a hidden effect
+  [[nodiscard]] bool all_named() const;        ///< whether every hidden effect is named
+  [[nodiscard]] bool all_in_set() const;       ///< all_named(), or one entry of the set ("A + B") names all
   [[nodiscard]] bool side_right() const;
   [[nodiscard]] bool nothing_missing() const { return kinds.empty() || value; }
-  [[nodiscard]] bool values_named()
-      const;  ///< nothing is missing, and the wrong values are among those named
-  /// Returns the verdict's probabilities with the truth. An explanation is correct if it names every hidden
-  /// effect and nothing else.
+  [[nodiscard]] bool values_named() const;  ///< whether nothing is missing and all wrong values are named
+  /// Returns the verdict's probabilities, compared with the truth. An explanation is true if it names every
+  /// hidden effect and nothing else.
   [[nodiscard]] Forecast forecast() const;
 };
 
-/// Hit rates of the cases under one recording condition; single effects count from 2 detection limits up.
+/// Hit rates of the cases under one field condition. Single effects count if their size is at least 2
+/// detection limits.
 struct ByCondition {
-  Rate nothing;  ///< nothing hidden: verdict adequate
-  Rate one;      ///< one listed effect: named first or in the set
-  Rate value;    ///< wrong value: named
-  Rate outside;  ///< unlisted effect: verdict "none of these"
+  Rate nothing;  ///< nothing hidden: the verdict is "adequate"
+  Rate one;      ///< one listed effect: it is named first or in the set
+  Rate value;    ///< wrong value: it is named
+  Rate outside;  ///< unlisted disturbance: the verdict is "none of these"
 };
 
 struct BlindScore {
   std::vector<ScoredCase> cases;
   std::vector<std::string> unjudged;  ///< cases without a verdict
-  std::map<std::string, Rate> rates;  ///< by name, see score_blind()
+  std::map<std::string, Rate> rates;  ///< hit rates by name
   std::map<std::string, double> targets;
-  std::map<std::string, std::map<std::string, int>> confusion;  ///< counts [kind][first effect named]
-  std::map<std::string, std::vector<Rate>> by_size;             ///< by channels: first_right() per size class
+  std::map<std::string, std::map<std::string, int>> confusion;  ///< cases by kind and first named effect
+  std::map<std::string, std::vector<Rate>> by_size;  ///< first_right() per size class, by recorded channels
   std::map<std::string, ByCondition> by_condition;
   Reliability reliability;
   double median_seconds = 0, longest_seconds = 0;
@@ -59,8 +59,8 @@ struct BlindScore {
 /// Lower edges of the size classes [detection limits].
 inline constexpr double kSizeEdges[] = {0.0, 1.0, 2.0, 4.0, 7.0};
 
-/// Scores the truth and the verdicts of the folder `run`. `targets` is a TOML file whose [target] holds least
-/// rates by name. Throws InputError with every error of the files.
+/// Compares the verdicts of the folder `run` with the truth. `targets`: TOML file whose [target] contains the
+/// required rates by name. Throws InputError with every error of the files.
 BlindScore score_blind(const std::filesystem::path& run, const std::filesystem::path& targets);
 std::string score_markdown(const BlindScore& score);
 nlohmann::json score_json(const BlindScore& score);

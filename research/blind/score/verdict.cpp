@@ -52,7 +52,7 @@ std::vector<std::string> names(const json& j, const char* key, const fs::path& f
   return list;
 }
 
-/// Reads [["SEXS", 0.97], ...]; empty if the judge gives none.
+/// Reads the probabilities, [["SEXS", 0.97], ...]; empty if the verdict has none.
 std::vector<std::pair<std::string, double>> probabilities(const json& j, const fs::path& file,
                                                           Problems& problems) {
   const auto at = j.find("probabilities");
@@ -71,7 +71,7 @@ std::vector<std::pair<std::string, double>> probabilities(const json& j, const f
   return {};
 }
 
-/// Runs the program with two arguments. Returns its exit code; -1 if it did not run to its end.
+/// Runs the program with two arguments. Returns its exit code, or -1 if it did not exit.
 int run(const std::string& program, const fs::path& folder, const fs::path& file) {
   const pid_t child = fork();
   if (child == 0) {

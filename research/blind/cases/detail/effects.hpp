@@ -1,6 +1,6 @@
 #pragma once
-// Effects of blind cases: the compiled ones and the unlisted ones, which no library contains, so that no
-// hypothesis can name them.
+// Effects of blind cases: the compiled effects and the unlisted disturbances. No library contains the latter,
+// so that no hypothesis can name them.
 #include <span>
 #include <string>
 
@@ -8,11 +8,11 @@
 
 namespace swingbank::research::blind::cases {
 
-/// Unlisted effects.
+/// Returns the unlisted disturbances.
 std::span<const sim::Effect> unlisted_effects();
-/// Returns the compiled or unlisted effect of that name; nullptr: none.
+/// Returns the compiled effect or unlisted disturbance of that name; nullptr if there is none.
 const sim::Effect* blind_effect(const std::string& name);
-/// Reads "EFFECT[:PARAM=VALUE,...]"; parameters that are not named have their default values.
+/// Reads "EFFECT[:PARAM=VALUE,...]". The other parameters have their default values.
 sim::plant::Block blind_block(const std::string& text, const std::string& where, Problems& problems);
 
 }  // namespace swingbank::research::blind::cases

@@ -12,7 +12,7 @@
 namespace swingbank::research::blind::cases {
 namespace {
 
-constexpr int kBlockTries = 200;  ///< largest number of draws of one block
+constexpr int kBlockTries = 200;  ///< most draws of one block
 
 constexpr const char* kKnownTransformer = "STEPUP:X=0.1";
 constexpr const char* kKnownExciter = "SEXS:K=150";
@@ -41,7 +41,7 @@ sim::plant::Block block_of(const std::string& text) {
 
 void put(sim::plant::Plant& plant, sim::plant::Block block) {
   const bool unlisted = sim::library::compiled().find(block.effect->name) != block.effect;
-  if (unlisted) {  // unlisted effects do not occupy their slot; they act after its other effects
+  if (unlisted) {  // an unlisted disturbance does not occupy its slot; it acts after the slot's effect
     plant.controls.push_back(std::move(block));
     std::ranges::stable_sort(plant.controls, {}, [](const sim::plant::Block& b) { return b.effect->slot; });
     return;
@@ -49,7 +49,7 @@ void put(sim::plant::Plant& plant, sim::plant::Block block) {
   if (auto problem = sim::plant::place(plant, std::move(block), "blind case")) throw InputError(*problem);
 }
 
-/// Replaces the plant's machine and keeps the values of parameters with equal names.
+/// Replaces the plant's machine. Parameters with equal names keep their values.
 void take_machine(sim::plant::Plant& plant, sim::plant::Block machine) {
   for (std::size_t i = 0; i < machine.p.size(); ++i)
     if (const int k = plant.machine.effect->parameter_index(machine.effect->parameters[i].name); k >= 0)
@@ -196,14 +196,15 @@ void BlindWorld::draw_target(const BlindConditions& conditions, BlindDraw& draw)
     jitter(block, 0.15, draw);
     put(plant, block);
   }
-  for (const BlindKind* kind : hidden_)  // paths through known blocks start at their null value
+  // A path through a block that the model contains starts at its null value.
+  for (const BlindKind* kind : hidden_)
     for (const BlindPath& path : kind->path)
       set_path(plant, grid_.conventions, path, along(path, 0.0, kind->logarithmic));
 }
 
 /// Splits off a part of the plant as a second unit at the same bus, with its own values and controls. Cases
-/// with a hidden instrument error are not split: the error would be one of the sum, which no hypothesis about
-/// a single unit covers.
+/// with a hidden instrument error are not split: the instrument would measure the sum of both units, and no
+/// hypothesis about a single unit covers its error.
 void BlindWorld::split_target(const BlindConfig& config, BlindDraw& draw) {
   const double share = config.conditions.second_unit_share;
   if (!(share > 0 && draw.coin(share)) || std::ranges::any_of(hidden_, &BlindKind::of_instrument)) return;

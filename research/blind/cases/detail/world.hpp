@@ -1,6 +1,6 @@
 #pragma once
-// Simulated system of one blind case: grid, plants, controls and events, drawn at random, with the hidden
-// effects at any size.
+// Simulated system of one blind case: randomly drawn grid, plants, controls and events, with hidden effects
+// of variable size.
 #include <array>
 #include <optional>
 #include <span>
@@ -24,7 +24,7 @@ class BlindWorld {
 
   /// Returns the grid with each hidden effect at its scale; nullopt omits an effect.
   [[nodiscard]] sim::grid::Grid grid(std::span<const std::optional<double>> scale) const;
-  /// Grid without any hidden effect.
+  /// Returns the grid without hidden effects.
   [[nodiscard]] const sim::grid::Grid& plain() const { return grid_; }
   [[nodiscard]] int plant() const { return plant_; }
   [[nodiscard]] const std::string& grid_name() const { return name_; }
@@ -32,7 +32,7 @@ class BlindWorld {
   [[nodiscard]] bool converter() const {
     return grid_.plants[static_cast<std::size_t>(plant_)].machine.effect->converter;
   }
-  /// Indices of the plants whose P and Q are recorded together, plant() first.
+  /// Returns the indices of the plants whose P and Q are recorded together, plant() first.
   [[nodiscard]] const std::vector<int>& recorded() const { return recorded_; }
   /// Returns whether the plant is recorded behind a transformer that its model contains.
   [[nodiscard]] bool transformed() const { return transformed_; }
@@ -52,12 +52,12 @@ class BlindWorld {
   bool controlled_ = false, transformed_ = false;
 };
 
-/// Varies every parameter except codes and limits by up to `relative_range`, until the effect's
-/// checks accept them. After 200 draws the values stay unchanged.
+/// Varies every parameter except codes and limits by up to `relative_range`. Repeats this until the effect's
+/// checks accept the values; after 200 rejected draws, the values stay unchanged.
 void jitter(sim::plant::Block& block, double relative_range, BlindDraw& draw);
 
-/// Changes every parameter of a machine by a share in the range `wrong`, up or down, until the machine is
-/// physical. Returns false if none of 10,000 draws is.
+/// Changes every parameter of a machine, up or down, by a relative amount in the range `wrong`. Repeats this
+/// until the machine is physical. Returns false if none of 10,000 draws is physical.
 bool mislead(sim::plant::Block& machine, std::pair<double, double> wrong, BlindDraw& draw);
 
 /// Draws a fault at a bus other than the plant's.
@@ -69,33 +69,34 @@ BlindEvent draw_frequency_event(const BlindWorld& world, BlindDraw& draw);
 /// and Q on each machine's base.
 sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, const std::vector<int>& plants,
                                            const BlindEvent& event, const BlindConfig& config);
-/// Returns the record of the instruments, without noise. Hidden measurement effects and the filter act at the
-/// fine rate; then every n-th sample is taken. P and Q are on kRecordMva and include those of `other`, the
-/// run's second plant, if there is one.
+/// Returns the noise-free record of the instruments. Hidden measurement effects and the filter act at the
+/// fine rate; then every n-th sample is taken. P and Q are on the base kRecordMva. They include those of
+/// `other`, the second plant of the run, if it is not null.
 validate::record::Record measured(const sim::reference::ReferenceRun& fine, const sim::plant::Plant& plant,
                                   const BlindEvent& event, const Conditions& conditions, double frequency,
                                   std::uint64_t seed, const sim::plant::Plant* other = nullptr);
-/// Standard deviations of white noise: `power` as a share of `mva` for P and Q and in pu for Ifd, `voltage`
-/// for V [pu] and theta [rad], `speed` [pu].
+/// Standard deviations of white noise. `power`: for P and Q as a share of `mva`, and for Ifd [pu]; `voltage`:
+/// for V [pu] and theta [rad]; `speed`: for the speed [pu].
 struct RecordNoise {
   double power, mva, voltage, speed;
 };
 /// Adds noise to the record; without `channels`, also removes speed and Ifd.
 void add_noise(validate::record::Record& record, const RecordNoise& noise, bool channels, BlindDraw& draw);
 
-/// Size of a hidden effect: norm of its change of P and Q over all events, in units of the noise of a correct
-/// model. That noise is the noise of P and Q plus the response of plant and controls to the noise of V and
-/// theta, including its slow part.
+/// Size of a hidden effect: norm of the change of P and Q that it causes in all events, in units of the
+/// residual noise of a correct model. This noise consists of the noise of P and Q, and of the response of
+/// plant and controls to the noise of V and theta.
 class BlindSize {
  public:
-  /// `plain`: records without the hidden effects; `tested`: their correct model; standard deviations of P and
-  /// Q, and of V and theta [pu on the records' base, rad].
+  /// `plain`: records without the hidden effects; `tested`: the correct model of these records;
+  /// `power_noise`: standard deviation of P and Q [pu on the records' base]; `voltage_noise`: that of V [pu]
+  /// and theta [rad].
   BlindSize(const sim::plant::PlantUnderTest& tested, const std::vector<BlindEvent>& events,
             std::vector<validate::record::Record> plain, double power_noise, double voltage_noise);
-  /// Returns the size before a refit.
+  /// Returns the size before the refit; `with`: records with the hidden effect.
   [[nodiscard]] double visible(const std::vector<validate::record::Record>& with) const;
-  /// Returns the size after a linear refit of the machine's parameters and of each event's switching times
-  /// and start. The parameters of the paths `but` are not refitted.
+  /// Returns the size after a linear refit of the model's parameters and of each event's switching times and
+  /// initial state. The parameters of the paths `but` are not refitted.
   [[nodiscard]] double left(const std::vector<validate::record::Record>& with,
                             std::span<const BlindPath> but = {}) const;
 
@@ -105,9 +106,9 @@ class BlindSize {
       const std::vector<validate::playin::SensitivityParameter>& along) const;
   [[nodiscard]] Eigen::VectorXd residual(std::size_t event, const validate::record::Record& record) const;
   void add_columns(std::size_t event);
-  /// Number of sensitivity parameters of one event: its switching times and its start.
+  /// Returns the number of sensitivity parameters of one event: its switching times and its initial state.
   [[nodiscard]] Eigen::Index own_columns(std::size_t event) const;
-  /// Index of an event's first row.
+  /// Returns the index of an event's first row in columns_.
   [[nodiscard]] Eigen::Index first_row(std::size_t event) const;
 
   sim::plant::Plant plant_;
@@ -115,7 +116,7 @@ class BlindSize {
   std::vector<BlindEvent> events_;
   std::vector<validate::record::Record> plain_;
   std::vector<validate::event::FitEvent> prepared_;
-  std::vector<validate::noise::EventNoise> noise_;  ///< of each event
+  std::vector<validate::noise::EventNoise> noise_;  ///< noise of each event
   std::vector<Eigen::VectorXd> plain_residual_;     ///< [event][sample * 2 + channel] [pu]
   validate::noise::RowMatrix
       columns_;  ///< whitened sensitivities for the refit: [event, sample, channel][parameter]
