@@ -51,11 +51,10 @@ struct BlindConditions {
   double ambient_share = 0;            ///< share of cases with independent random variation of every load
   std::pair<double, double> ambient{0, 0};  ///< range of its RMS, as a share of the load's power
   double drift_share = 0;                   ///< share of cases with a drift of all loads
-  std::pair<double, double> drift{0,
-                                  0};  ///< range of its rate, as a share of the power per minute, up or down
-  double wander_share = 0;             ///< share of cases with a varying angle reference
-  std::pair<double, double> wander{0, 0};  ///< range of its amplitude [rad]
-  double long_share = 0;                   ///< share of cases whose first record is three times as long
+  std::pair<double, double> drift{0, 0};    ///< range of its rate, up or down: share of the power per minute
+  double wander_share = 0;                  ///< share of cases with a varying angle reference
+  std::pair<double, double> wander{0, 0};   ///< range of its amplitude [rad]
+  double long_share = 0;                    ///< share of cases whose first record is three times as long
   double dip_share = 0;          ///< share of cases whose last event is a frequency dip without switching
   double transformer_share = 0;  ///< share of cases recorded behind a transformer, which the model contains
   double second_unit_share = 0;  ///< share of cases recorded together with another unit of known model
