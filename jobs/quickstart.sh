@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# From a bare Debian 12 to result tables: installs, builds, simulates events of the IEEE 39-bus system, trains and
-# tests one network per generator left out, prints the tables.
+# Leads from a bare Debian 12 to result tables: installs, builds, simulates events of the IEEE 39-bus system, trains
+# and tests one network for each generator left out, and writes the tables.
 #   bash jobs/quickstart.sh [--out FOLDER]     (default out/quickstart)
-# Started again, it continues where it stopped.
+# If it is started again, it continues where it stopped.
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -17,7 +17,6 @@ done
 
 bash "$source_folder/jobs/setup.sh"
 started=$SECONDS
-# exec: the runner itself then receives a signal
 bash "$source_folder/jobs/run_experiment.sh" --experiment "$source_folder/configs/experiments/ieee39_gencls.toml" \
   --preset quick --out "$out"
 printf '\n%s\n' "done in $(((SECONDS - started + 59) / 60)) min after the build"

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # Runs one experiment from its config to its tables; finished parts are skipped. The quickstart, the
-# nightly run and the Slurm jobs all run this script.
+# nightly benchmark and the Slurm jobs use this script.
 #   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
 #                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER]
-#     --stage     check, databank, generate, train, tables, or all of them (all, the default); count-tasks prints how
-#                 many tasks the stage train has, one per network, noise level and fold, and one per share
-#                 of the training rows
-#     --task      of the stage train, this one only, from 0
-#     --seed      of the training (default 1)
-#     --ranks     MPI processes that generate (default: one per core)
-#     --launcher  starts them (default mpirun)
+#     --stage     check, databank, generate, train, tables, or all (default: all); count-tasks prints the number of
+#                 tasks of the stage train: one per network, noise level and fold, and one per share of the
+#                 training rows
+#     --task      number of the only task of the stage train to run, from 0
+#     --seed      seed of the training (default 1)
+#     --ranks     number of MPI processes that generate (default: one per core)
+#     --launcher  command that starts these processes (default mpirun)
 #     --build     build folder (default build/release)
 # $SWINGBANK_EXPERIMENT, $SWINGBANK_PRESET, $SWINGBANK_OUT and $SWINGBANK_BUILD are the defaults of the options.
 # Exit codes: 0 done, 1 failed, 2 saved on a signal (run it again to continue).
@@ -48,19 +48,19 @@ if [[ ! -x $swingbank ]]; then
   exit 1
 fi
 
-# Properties of the experiment: dataset, draws, table, tasks and the like
+# ask KEY: prints a property of the experiment, such as dataset, draws or tasks
 ask() { "$swingbank" train --experiment "$experiment" --preset "$preset" --print "$1"; }
 
-# A dataset belongs to its config and size; experiments with the same two share the folder.
+# Folders of the dataset, and of the dataset whose rows are for training only.
 dataset_folder() { echo "$out/data"; }
-training_folder() { echo "$out/training-data"; } # rows that only train
+training_folder() { echo "$out/training-data"; }
 
 say() { printf '\n-- %s, %s: %s\n' "$(basename "$experiment" .toml)" "$preset" "$1"; }
 
-# databank_file FOLDER-OF-DATA DRAWS
+# databank_file DATASET-FOLDER DRAWS: prints the path of the databank
 databank_file() { echo "$1-databank-$2.h5"; }
 
-# draw_databank CONFIG DRAWS FOLDER: once; `generate` reads it
+# draw_databank CONFIG DRAWS FOLDER: draws the databank unless its file exists; `generate` reads the file
 draw_databank() {
   local file
   file=$(databank_file "$3" "$2")
@@ -75,11 +75,11 @@ databank() {
   draw_databank "$(ask training_dataset)" "$(ask training_draws)" "$(training_folder)"
 }
 
-# generate_events CONFIG DRAWS FOLDER
+# generate_events CONFIG DRAWS FOLDER: simulates the missing events of a dataset
 generate_events() {
   say "events for $1 ($2 draws) on $ranks processes"
   local root=() file
-  # OpenMPI refuses root unless two variables allow it; whoever starts this script as root intends it.
+    # OpenMPI refuses to run as root unless two variables allow it. Who starts this script as root intends that.
   if ((EUID == 0)); then root=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1); fi
   local command=("${root[@]}")
   # shellcheck disable=SC2206 # the launcher is a list of words
@@ -120,7 +120,7 @@ run_task() {
 train() {
   local all lines line
   all=$(ask tasks)
-  # A process that trains all folds reads the dataset once.
+    # If all tasks run here, one process trains all folds of a network, so that the dataset is read once.
   if [[ -z $task ]]; then all=$(sed -E 's/^([^ ]+ [^ ]+) [0-9]+$/\1 all/' <<<"$all" | uniq); fi
   mapfile -t lines <<<"$all"
   if [[ -n $task ]]; then
@@ -141,7 +141,7 @@ tables() {
   "$swingbank" tables "$out/results" --out "$out/tables"
 }
 
-ask table >/dev/null # whatever is wrong with the experiment is said before anything is made
+ask table >/dev/null # reports errors of the experiment before any work
 case $stage in
   check) ;;
   count-tasks) ask tasks | wc -l ;;

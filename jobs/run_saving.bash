@@ -1,26 +1,26 @@
-# To be sourced: running the long programs from scripts. Contract of the programs: SIGUSR1 -> save, then exit code 2 =
-# "saved, run again to continue".
+# Functions with which scripts run long programs; to be sourced. After SIGUSR1, such a program saves its state and ends
+# with exit code 2: "saved, run again to continue".
 
 stop_wanted=0
-stop_signal='' # the last one
+stop_signal='' # last stop signal
 child=''
 
-# A signal that arrives between two programs is stored; Ctrl-C saves too. (bash runs a trap only between commands or
-# in `wait`, hence programs run in the background.)
+# Stores a stop signal, also between two programs, and forwards it as SIGUSR1. Programs run in the background, because
+# bash runs a trap only between commands or in `wait`.
 on_stop_signal() {
   stop_wanted=1 stop_signal=$1
   if [[ -n $child ]]; then kill -USR1 "$child" 2>/dev/null || true; fi
 }
 for stop_signal in USR1 TERM INT; do
-  # shellcheck disable=SC2064 # the name as it is now
+    # shellcheck disable=SC2064 # the trap needs the name of this signal
   trap "on_stop_signal $stop_signal" "$stop_signal"
 done
 stop_signal=''
 
 launcher_patience=${SWINGBANK_LAUNCHER_PATIENCE:-30} # [s]
 
-# is_lost LAUNCHER: true if all its processes have ended without its noticing, or one was stopped and others wait for
-# it. Sets `lost`, the process to kill to end the whole: the launcher, or the stopped process.
+# is_lost LAUNCHER: true if all child processes of the launcher have ended and it does not notice, or if one is stopped
+# and the others wait for it. Sets `lost` to the process to kill: the launcher, or the stopped process.
 is_lost() {
   lost=$1
   local process state dead=0 all
@@ -49,15 +49,15 @@ watch_launcher() {
   done
 }
 
-# run_saving PROGRAM...: runs it, forwards stop signals as SIGUSR1, returns its exit code. A launcher that receives a
-# signal during startup dies of it (mpirun: 244); finished shards and checkpoints are on the disk at any time, so that
-# counts as saved too.
+# run_saving PROGRAM...: runs the program, forwards stop signals as SIGUSR1, and returns its exit code. A launcher that
+# receives a signal during startup dies (mpirun: exit code 244). This counts as "saved" too, because finished shards and
+# checkpoints are on the disk at any time.
 run_saving() {
   local status before stopped=0 watcher
   if ((stop_wanted)); then return 2; fi
   "$@" &
   child=$!
-  watch_launcher "$child" 9>&- & # 9 is the lock of a script: the watcher's sleep would hold it for a second more
+    watch_launcher "$child" 9>&- & # without 9, the lock of a script, which its sleep would hold for another second
   watcher=$!
   while :; do
     before=$stop_wanted status=0
@@ -67,7 +67,7 @@ run_saving() {
       stop_wanted=$before
       break
     fi
-    stopped=1 # the wait was interrupted, and the program may still be saving
+        stopped=1 # a signal interrupted `wait`; the program may still be saving
   done
   child=''
   kill "$watcher" 2>/dev/null || true

@@ -2,11 +2,11 @@
 # Installs missing Debian packages, configures and builds.
 #   bash jobs/setup.sh [--preset NAME | --any-processor] [--tests] [--target NAME]... [--packages-only]
 #     --preset         one of CMakePresets.json (default release); the build folder is build/<preset>
-#     --any-processor  build/portable, which runs on any x86-64 processor of the last fifteen years, with the same
-#                      programs for AVX2 and AVX-512 in addition: swingbank chooses by processor (three builds)
-#     --tests          also the packages that packages.txt marks "tests:", and the tests themselves
-#     --target         build this only
-#     --packages-only  install, do not build
+#     --any-processor  build/portable for any x86-64 processor of the last fifteen years, and the same programs for
+#                      AVX2 and AVX-512 (three builds); swingbank selects the programs for the processor
+#     --tests          also install the packages that packages.txt marks "tests:", and build the tests
+#     --target         build only this target
+#     --packages-only  install packages, do not build
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -65,7 +65,7 @@ install_packages() {
   rm -f "$log"
 }
 
-# Compiling a file that includes LibTorch's headers takes up to 3 GiB.
+# Number of parallel compile jobs: a file that includes LibTorch's headers takes up to 3 GiB of memory.
 compile_jobs() {
   local cores memory_gib
   cores=$(nproc)
@@ -89,7 +89,7 @@ build_all() {
   cmake --build "build/$preset" -j "$jobs" ${targets[@]+--target "${targets[@]}"}
 }
 
-# build_level NAME: the programs for one instruction set, in a separate folder
+# build_level NAME: builds the programs for one instruction set in a separate folder
 build_level() {
   local folder=build/portable-$1 log=build/portable-$1-configure.log
   if ! cmake --preset portable -B "$folder" -DSWINGBANK_ARCH="$1" -DSWINGBANK_TESTS=OFF -DSWINGBANK_PYTHON=OFF >"$log" 2>&1; then

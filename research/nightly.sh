@@ -1,24 +1,24 @@
 #!/usr/bin/env bash
-# Reproduces the tables within a given number of hours, keeps a dated report and lists the changes since earlier runs.
+# Computes the tables within a given number of hours, writes a dated report and lists the changes since earlier runs.
 #   bash research/nightly.sh [--hours N] [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--seeds K]
 #                        [--keep-data] [--tests 0|1] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
-#     --hours      of the whole run on this machine, default 2: the preset `nightly` is scaled so that the tables
-#                  take two thirds of them; the nightly tests, the blind test and the fuzz targets share the remaining
-#                  time
-#     --out        default out/nightly; one folder per nightly run in it, `latest` points to the last one
-#     --date       default today; an interrupted run continues when started again on its date, in its original
-#                  sizes
-#     --preset     this preset without scaling, however long it takes
-#     --seed       of the training; default ten times the day's number, so that every nightly run has other seeds: the
-#                  nightly runs then show the random variation of a result
-#     --seeds      trains with that many seeds, from --seed on; default 3 if the nightly run has 4 hours or more, else 1
-#     --keep-data  keeps the simulated events (gigabytes; the same config makes the same bytes again)
-#     --tests      1 runs the nightly tier of the tests (tests/run.sh --nightly), 0 skips it; default 1 if 70 % of the
-#                  remaining time suffices by the last nightly run's measurement (without one: an hour and a half)
-#     --fuzz       time of each fuzz target of the readers; default the remaining time; 0 skips them
-#     --blind      cases of a blind test of the diagnosis with the nightly run's seed; default as many as time permits;
-#                  0 skips it
-#     EXPERIMENT   default every file of configs/experiments
+#     --hours      duration of the whole run on this machine (default 2). The preset `nightly` is scaled so that the
+#                  tables take two thirds of it; the nightly tests, the blind test and the fuzz targets share the
+#                  remaining time
+#     --out        folder with one folder per nightly run (default out/nightly); `latest` points to the last one
+#     --date       date of the run (default today); an interrupted run that is started again with its date continues
+#                  with its original sizes
+#     --preset     run this preset without scaling, however long it takes
+#     --seed       first seed of the training (default ten times the number of days since 1970). Every nightly run thus
+#                  has new seeds, and the runs show the random variation of a result
+#     --seeds      number of seeds to train with, from --seed on (default 3 if --hours is 4 or more, else 1)
+#     --keep-data  keep the simulated events (gigabytes; the same config generates the same bytes again)
+#     --tests      1: run the nightly tier of the tests (tests/run.sh --nightly), 0: skip it; default 1 if 70 % of the
+#                  remaining time suffices for the duration measured last (before the first measurement: 1.5 h)
+#     --fuzz       time for each fuzz target [s] (default: the remaining time; 0: none)
+#     --blind      number of cases of a blind test of the diagnosis, with the same seed (default: as many as the time
+#                  permits; 0: none)
+#     EXPERIMENT   file of an experiment (default: all of configs/experiments)
 # Exit codes: 0 done, 1 failed, 2 saved on a signal.
 set -euo pipefail
 
@@ -26,9 +26,9 @@ source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds='' hours=2 keep_data=0 fuzz='' blind='' tests='' experiments=()
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
 hours_of_seeds=4                             # [h]; from this duration on, three seeds are used
-table_share=0.67                             # of the hours
+table_share=0.67                             # share of the hours for the tables
 tests_take=5400                              # [s] of two cores with builds; default before the first measurement
-blind_share=0.6                              # of the time that remains after the tables
+blind_share=0.6                              # share of the time that remains before the blind test
 blind_case=80                                # [s] of two cores; docs/reference/blind-test-results.md
 fuzz_build=300 fuzz_least=10                 # [s]; docs/reference/performance.md
 while (($#)); do
@@ -77,8 +77,8 @@ fi
 # shellcheck source=jobs/run_saving.bash
 source "$source_folder/jobs/run_saving.bash"
 
-# with_tries COMMAND...: repeats a command that failed by accident (a killed rank, a full disk that was cleared); it
-# continues where it stopped
+# with_tries COMMAND...: runs a command and repeats it after a failure, such as a killed rank or a full disk. The
+# command then continues where it stopped
 with_tries() {
   local try status
   for ((try = 1; try <= tries; try++)); do
@@ -91,7 +91,7 @@ with_tries() {
   return 1
 }
 
-# part NAME COMMAND...: prints and records its time, also that of an interrupted part.
+# part NAME COMMAND...: runs a command; prints and records its time, also if it was interrupted
 part() {
   local name=$1 begin=$SECONDS status=0
   shift
@@ -101,10 +101,10 @@ part() {
   return "$status"
 }
 used() { awk -F'\t' '{sum += $2} END {printf "%d", sum}' "$night/parts.tsv"; }
-# left SHARE: remaining seconds of the budget, times SHARE
+# left SHARE: prints the remaining time [s] times SHARE
 left() { awk -v used="$(used)" "BEGIN {left = ($hours * 3600 - used) * $1; printf \"%d\", (left > 0 ? left : 0)}"; }
 
-# Time of the nightly tests when they last ran to the end [s].
+# Prints the duration of the nightly tests when they last ran to the end [s].
 tests_took() {
   local folder took=$tests_take
   for folder in "$out"/????-??-??; do # in the order of their dates
@@ -115,10 +115,11 @@ tests_took() {
   echo "$took"
 }
 
-# keep NAME...: saves these variables for the nightly run
+# keep NAME...: saves these variables for a restart of this nightly run
 keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
 
-# The nightly run's sizes are determined once; of the options of a second start only --tests, --blind and --fuzz count.
+# Determines the sizes of the nightly run once. A restart uses them again; of its options, only --tests, --blind and
+# --fuzz have an effect.
 settle() {
   if [[ -s $night/sizes.conf ]]; then
     local asked_tests=$tests asked_blind=$blind asked_fuzz=$fuzz
@@ -131,7 +132,7 @@ settle() {
   rm -rf "$night/experiments"
   mkdir -p "$night/experiments"
   if [[ -z $preset ]]; then
-    name=nightly-${hours/./_}h # a dot would divide a key
+        name=nightly-${hours/./_}h # a dot would separate two keys
     table_hours=$(awk "BEGIN {print $hours * $table_share}")
     "$swingbank" night-plan "${experiments[@]}" --preset nightly --hours "$table_hours" --cores "$(nproc)" --seeds "$seeds" \
       --rates "$source_folder/research/rates.toml" --name "$name" --out "$night/experiments" >"$night/plan.md" || return 1
@@ -142,7 +143,7 @@ settle() {
   keep hours preset seed seeds experiments
 }
 
-# run_stage STAGE SEED EXPERIMENT
+# run_stage STAGE SEED EXPERIMENT: runs one stage of an experiment, with repetitions
 run_stage() {
   with_tries bash "$source_folder/jobs/run_experiment.sh" --experiment "$3" --preset "$preset" --seed "$2" \
     --out "$night/$(basename "$3" .toml)" --stage "$1"
@@ -152,7 +153,7 @@ run_tables() {
   local experiment name k folders=()
   for experiment in "${experiments[@]}"; do
     name=$(basename "$experiment" .toml)
-    if [[ ! -e $night/$name/trained ]]; then # its events may be gone
+        if [[ ! -e $night/$name/trained ]]; then # otherwise its events may be removed already
       part "$name: events" run_stage generate "$seed" "$experiment" || return $?
       for ((k = 0; k < seeds; ++k)); do
         part "$name: training, seed $((seed + k))" run_stage train $((seed + k)) "$experiment" || return $?
@@ -165,8 +166,7 @@ run_tables() {
   part tables "$swingbank" tables "${folders[@]}" --out "$night/tables"
 }
 
-# A part of the blind test (docs/reference/blind-test-results.md); finished cases and verdicts stay after an
-# interruption.
+# Runs a blind test (docs/reference/blind-test-results.md). After an interruption, finished cases and verdicts remain.
 blind_test() {
   local configs=$source_folder/configs/blind run=$night/blind
   run_saving "$swingbank" blind-test --config "$configs/cases.toml" --out "$run" --make "$blind" --seed "$seed" &&
@@ -185,7 +185,7 @@ fuzz_targets() {
   cat "$night/fuzz.txt"
   return "$status"
 }
-fuzz_seconds() { # [s] of each target, two at a time, from the remaining time
+fuzz_seconds() { # time for each target [s], from the remaining time; two targets run at a time
   local targets=("$source_folder"/tests/fuzz/*.cpp) budget
   budget=$(left 1)
   if [[ ! -d $source_folder/build/fuzz/bin ]]; then budget=$((budget - fuzz_build)); fi
@@ -193,7 +193,7 @@ fuzz_seconds() { # [s] of each target, two at a time, from the remaining time
   echo $((budget < fuzz_least ? 0 : budget))
 }
 
-# report: the nightly run's results so far; written again after each part
+# report: writes the results of the nightly run so far
 report() {
   {
     "$swingbank" nightly-compare "$out" --night "$date" || return 1
@@ -204,7 +204,7 @@ report() {
       "$night/parts.tsv"
     if [[ -s $night/plan.md ]]; then printf '\n## Plan\n\nBy the rates of research/rates.toml:\n\n' && cat "$night/plan.md"; fi
     printf '\n'
-    sed 's/^#/##/;s,](tables/,](tables/tables/,' "$night/tables/tables.md" # the pictures are in the same folder
+        sed 's/^#/##/;s,](tables/,](tables/tables/,' "$night/tables/tables.md" # adapts the links to the pictures
     if [[ -s $night/blind/score.md ]]; then
       printf '\n## Blind test, seed %s\n\n' "$seed"
       sed '1,2d;s/^## /### /' "$night/blind/score.md"

@@ -1,16 +1,17 @@
-# Shared by the batch scripts. modules, launcher, max_restarts and max_retries come from the site file.
+# Functions of the batch scripts. The site file sets modules, launcher, max_restarts and max_retries.
 # shellcheck disable=SC2154
 
 # shellcheck source=jobs/run_saving.bash
 source "$SWINGBANK_SOURCE/jobs/run_saving.bash"
 
-# Exit code 2 requeues the job, or submits it anew if the site forbids requeueing. Failures that a node may have
-# caused are submitted again on other nodes. Limits: max_restarts and max_retries.
+# finish_or_requeue STATUS: ends the job. Exit code 2 requeues the job, or submits it again if the site forbids
+# requeueing, at most max_restarts times. A job whose failure a node may have caused is submitted again on other nodes,
+# at most max_retries times.
 finish_or_requeue() {
   local status=$1 restarts=$((${SLURM_RESTART_COUNT:-0} + ${SWINGBANK_SEGMENT:-0}))
   ((status > 2)) && retry_elsewhere "$status"
   ((status == 2)) || exit "$status"
-  if [[ $stop_signal == TERM ]]; then # cancelled by a person, or preempted: then Slurm itself requeues
+    if [[ $stop_signal == TERM ]]; then # cancelled by a person, or preempted and requeued by Slurm itself
     echo "saved; stopped by a signal"
     exit "$status"
   fi
@@ -27,11 +28,12 @@ finish_or_requeue() {
     SWINGBANK_SEGMENT=$((${SWINGBANK_SEGMENT:-0} + 1)) follow_up
     exit 0
   fi
-  sleep 60 # the requeue ends this script; an earlier exit would let the job count as finished
+    sleep 60 # requeueing ends this script; if it exited earlier, the job would count as finished
   exit 1
 }
 
-# A program that was killed or crashed: its input is not the cause (that is exit code 1).
+# retry_elsewhere STATUS: submits the job again after its program was killed or crashed. The input is not the cause; it
+# would give exit code 1.
 retry_elsewhere() {
   local retries=${SWINGBANK_RETRY:-0} nodes
   if ((retries >= max_retries)); then
@@ -47,7 +49,7 @@ retry_elsewhere() {
   exit 0
 }
 
-# The nodes of the job that no longer start a program; of a job on one node, that node.
+# Prints the nodes of the job that no longer start a program; for a job on one node, that node.
 failed_nodes() {
   local nodes node
   mapfile -t nodes < <(scontrol show hostnames "$SLURM_JOB_NODELIST")
@@ -60,7 +62,7 @@ failed_nodes() {
   done
 }
 
-# Submits this job anew with the same options, and makes the dependent jobs wait for the new one.
+# Submits this job again with the same options, and makes the dependent jobs wait for the new one.
 follow_up() {
   local log=$SWINGBANK_OUT/log stage=${SLURM_JOB_NAME#swingbank-} options id
   export SWINGBANK_SEGMENT SWINGBANK_RETRY
@@ -79,7 +81,7 @@ follow_up() {
   echo "it continues as job $id"
 }
 
-# The last job of a stage, and all of them: the dependencies of the following jobs.
+# Print the last job of a stage, and all its jobs: the dependencies of the following jobs.
 newest() { awk -v stage="$1" '$1 == stage {id = $2} END {print id}' "$SWINGBANK_OUT/log/jobs"; }
 all_of() { awk -v stage="$1" '$1 == stage {printf ":%s", $2}' "$SWINGBANK_OUT/log/jobs"; }
 wait_for_the_new_one() {

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Submits an experiment: databank -> generate -> one array task per fold -> tables, each after the one before.
+# Submits an experiment as jobs that wait for one another: databank, generate, one array task per fold, tables.
 #   bash slurm/submit.sh EXPERIMENT PRESET [--out FOLDER] [--site FILE]
 #     EXPERIMENT  a file of configs/experiments       PRESET  quick, nightly or thesis
-#     --out       results (default out/<experiment>-<preset>); on a file system shared by all nodes
-#     --site      partition, ranks, memory, times (default slurm/site.conf); all jobs use a copy made now
-#     --dry-run   checks everything and prints the sbatch commands
-#     --status    Slurm's state of this experiment's jobs
-#     --cancel    cancels those that wait or run; finished results stay
-# Prints one line per job: "<stage> <job id>", kept in <out>/log/jobs. Submitting again continues from existing results;
-# it is refused while jobs of an earlier submission wait or run.
+#     --out       folder for results, shared by all nodes (default out/<experiment>-<preset>)
+#     --site      partition, ranks, memory, times (default slurm/site.conf); the jobs use a copy of this file
+#     --dry-run   check everything and print the sbatch commands
+#     --status    print the state of this experiment's jobs
+#     --cancel    cancel the jobs that wait or run; finished results stay
+# Prints one line per job: "<stage> <job id>", also written to <out>/log/jobs. Submitting again continues from existing
+# results; it is an error while jobs of an earlier submission wait or run.
 set -euo pipefail
 
 SWINGBANK_SOURCE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -40,7 +40,7 @@ source "$SWINGBANK_SITE"
 log=$SWINGBANK_OUT/log
 faults=0
 fault() { echo "$1 at $SWINGBANK_SITE ($2): $3" >&2; faults=1; }
-# whole NAME LEAST: checks an integer of the site file
+# whole NAME LEAST: checks that a value of the site file is an integer of at least LEAST
 whole() {
   local value=${!1:-}
   if [[ -z $value ]]; then
@@ -68,8 +68,8 @@ check_site() {
   ((!faults)) || exit 1
 }
 
-# Copies scripts and programs, so that a new build or an edit does not change waiting jobs: links on the same disk (a
-# build replaces files by new ones), else copies.
+# Copies scripts and programs, so that a new build or an edit does not change waiting jobs. Programs on the same disk
+# are hard links, because a build replaces files instead of changing them.
 keep_software() {
   local kept=$log/software build=${SWINGBANK_BUILD:-$SWINGBANK_SOURCE/build/release}
   rm -rf "$kept"
@@ -113,7 +113,7 @@ esac
 check_site
 
 runner=$SWINGBANK_SOURCE/jobs/run_experiment.sh
-bash "$runner" --stage check # bad settings are reported now, not by a job at night
+bash "$runner" --stage check # reports invalid settings now instead of in a job
 tasks=$(bash "$runner" --stage count-tasks)
 
 common=(--parsable --export=ALL --chdir="$SWINGBANK_OUT" --kill-on-invalid-dep=yes "${sbatch_extra[@]}")
@@ -135,7 +135,7 @@ if [[ $action == submit ]]; then
   : >"$log/jobs"
 fi
 
-# submit STAGE DEPENDENCY OPTION...: the job's id in $id
+# submit STAGE DEPENDENCY OPTION...: submits a job and sets $id to its id
 submit() {
   local stage=$1 before=$2
   shift 2
@@ -156,7 +156,7 @@ submit() {
       "${#queued[@]} jobs before it were cancelled" >&2
     exit 1
   fi
-  id=${id%%;*} # "id;cluster" on federations
+    id=${id%%;*} # sbatch prints "id;cluster" on federations
   echo "$stage $id" | tee -a "$log/jobs"
 }
 
@@ -168,6 +168,6 @@ submit() {
   generated=afterok:$id
   submit fold "$generated" --output="$log/fold-%a.log" --time="$fold_time" "${warning[@]}" \
     --cpus-per-task="$fold_cpus" --mem="$fold_mem" --array="0-$((tasks - 1))%$folds_at_once"
-  # A failed fold leaves the tables of the others.
+    # If a fold fails, the tables contain the others.
   submit tables "$generated,afterany:$id" --output="$log/tables.log" --time="$tables_time" --mem="$tables_mem"
 }

@@ -2,8 +2,8 @@
 # Builds the OCI image of Swingbank with buildah from the Debian packages of `cpack -G DEB`.
 #   bash packaging/oci/build.sh PACKAGES [--train] [--name NAME] [--base IMAGE | --bootstrap]
 # PACKAGES is the folder of the .deb files. --train also installs swingbank-train (MPI, LibTorch). --base names another
-# base image; --bootstrap makes the base with mmdebstrap from the Debian mirror of this machine, without a registry (as
-# root). Where containers cannot be started, BUILDAH_ISOLATION=chroot builds all the same.
+# base image. --bootstrap creates the base image with mmdebstrap from this machine's Debian mirror, without a registry;
+# it needs root. On a machine that cannot start containers, set BUILDAH_ISOLATION=chroot.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 usage="bash packaging/oci/build.sh PACKAGES [--train] [--name NAME] [--base IMAGE | --bootstrap]"

@@ -1,4 +1,4 @@
-# The Spack package of Swingbank, kept here until it is part of Spack's own repository:
+# Spack package of Swingbank, kept in this folder until it is part of Spack's repository:
 #   spack repo add packaging/spack && spack install swingbank
 from spack.package import *
 
