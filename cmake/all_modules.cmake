@@ -1,5 +1,5 @@
-# All modules in one program: with -flto the linker compares the types of each name across them (the one-definition
-# rule). No single command links all of them.
+# Program with all modules, for the one-definition rule: with -flto the linker compares the types of the same name in
+# all modules. No command links all of them.
 get_property(modules GLOBAL PROPERTY SWINGBANK_MODULES)
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/all_modules.cpp CONTENT "int main() {}\n")
 add_executable(all_modules ${PROJECT_BINARY_DIR}/all_modules.cpp)

@@ -1,5 +1,5 @@
-# Writes a source file with the version and a hash of the sources that determine a result, without comments and
-# blanks: cmake -D VERSION=... -D OUT=... -D LIST=file-with-one-path-a-line -P code_hash.cmake
+# Writes a source file with the version and a hash of the sources that determine a result. The hash ignores comments and
+# blanks. Call: cmake -D VERSION=... -D OUT=... -D LIST=file-with-one-path-a-line -P code_hash.cmake
 cmake_minimum_required(VERSION 3.25)
 file(STRINGS ${LIST} files)
 set(all "")

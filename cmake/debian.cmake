@@ -1,13 +1,14 @@
-# Debian packages: `cpack -G DEB` in the build folder makes one of each component of install.cmake.
+# Debian packages: `cpack -G DEB` in the build folder builds one package per component of install.cmake.
 #   swingbank           commands without datasets and networks, example configs, documents
 #   swingbank-train     programs of datasets and networks, with MPI and LibTorch
 #   libswingbank-dev    library and headers
 #   python3-swingbank   Python package
-# debian_files.cmake makes the files that only a package has, debian_size.cmake corrects the size that CPack states. dpkg-shlibdeps finds the shared libraries' packages.
+# debian_files.cmake writes the files that only a package has. debian_size.cmake corrects the size that CPack states.
+# dpkg-shlibdeps finds the packages of the shared libraries.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME swingbank)
 set(CPACK_VERBATIM_VARIABLES ON)
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each package has its own
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # each package has its own summary
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -15,11 +16,11 @@ set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
-set(CPACK_DEBIAN_COMPRESSION_TYPE zstd) # the fastest, until debian_size.cmake
+set(CPACK_DEBIAN_COMPRESSION_TYPE zstd) # fastest method; debian_size.cmake compresses again
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian_files.cmake)
 set(CPACK_POST_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian_size.cmake)
-set(CPACK_SWINGBANK_SOURCE ${PROJECT_SOURCE_DIR}) # for these scripts
+set(CPACK_SWINGBANK_SOURCE ${PROJECT_SOURCE_DIR}) # for both scripts
 file(STRINGS CITATION.cff authors REGEX "^  - name: ")
 string(REGEX REPLACE ".*\"(.*)\"" "\\1" CPACK_DEBIAN_PACKAGE_MAINTAINER "${authors}")
 set(same "swingbank (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
@@ -59,7 +60,7 @@ if(SWINGBANK_PYTHON_FOUND)
 This package contains the Python package swingbank, which runs the library
 in the interpreter's process.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-  math(EXPR next "${Python_VERSION_MINOR} + 1") # the extension is compiled for one minor version
+  math(EXPR next "${Python_VERSION_MINOR} + 1") # the extension works with one minor version only
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "${same}, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy, python3-h5py")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/debian/postinst

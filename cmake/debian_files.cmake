@@ -1,11 +1,11 @@
-# Run by cpack after all components are installed into its folder and before they become packages: strips binaries,
-# compresses man pages, and writes copyright, changelog and lintian's overrides.
+# Strips binaries, compresses man pages, and writes copyright, changelog and overrides for lintian. cpack runs this
+# script after it has installed all components into its folder, and before it packs them.
 cmake_minimum_required(VERSION 3.25)
 file(READ ${CPACK_SWINGBANK_SOURCE}/LICENSE licence)
 file(READ ${CPACK_SWINGBANK_SOURCE}/validate/report/uplot/LICENSE uplot)
 file(READ ${CPACK_SWINGBANK_SOURCE}/CHANGELOG.md changes)
 
-# deb822(text out): text as a field's following lines, an empty line as "."
+# deb822(text out): sets out to the text as continuation lines of a field; an empty line becomes "."
 function(deb822 text out)
   string(STRIP "${text}" text)
   string(REPLACE "\n" "\n " text " ${text}")
@@ -13,7 +13,8 @@ function(deb822 text out)
   set(${out} "${text}" PARENT_SCOPE)
 endfunction()
 
-# copyright_line(text line terms): "2026, the Swingbank authors" of a licence, and its terms
+# copyright_line(text line terms): splits a licence into its copyright line ("2026, the Swingbank authors") and its
+# terms
 function(copyright_line text line terms)
   string(REGEX MATCH "Copyright \\(c\\) ([^\n]*)\n(.*)" found "${text}")
   set(${line} "${CMAKE_MATCH_1}" PARENT_SCOPE)
@@ -40,7 +41,7 @@ License: Expat
 ${other_terms}
 ")
 
-# The release of this version, with its date.
+# The changelog's heading of this version, with its date.
 string(REGEX MATCH "\n## ${CPACK_PACKAGE_VERSION} — ([0-9-]+)\n" found "${changes}")
 if(NOT found)
   message(FATAL_ERROR "no release ${CPACK_PACKAGE_VERSION} at CHANGELOG.md (the packages have that version): add its heading")
@@ -78,7 +79,7 @@ foreach(component ${CPACK_COMPONENTS_ALL})
     endif()
     file(READ ${file} magic LIMIT 8 HEX)
     if(magic MATCHES "^7f454c46") # ELF
-      # Debian's libraries are in the search path, without the folders of the build machine.
+      # The folders of the build machine are not needed: Debian's libraries are in the search path.
       file(RPATH_REMOVE FILE ${file})
       execute_process(COMMAND strip --strip-unneeded --remove-section=.comment --remove-section=.note ${file} COMMAND_ERROR_IS_FATAL ANY)
     elseif(magic STREQUAL 213c617263683e0a) # archive

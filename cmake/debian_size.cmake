@@ -1,11 +1,11 @@
-# Run by cpack after the packages are made: writes their Installed-Size again, because CPack counts the program behind
-# each symbolic link, and packs them with xz, as lintian demands.
+# Corrects the field Installed-Size of the packages, because CPack counts the program behind each symbolic link, and
+# compresses the packages with xz, which lintian requires. cpack runs this script after it has built the packages.
 cmake_minimum_required(VERSION 3.25)
 foreach(package ${CPACK_PACKAGE_FILES})
   set(tree ${CPACK_TEMPORARY_DIRECTORY}/again)
   file(REMOVE_RECURSE ${tree})
   execute_process(COMMAND dpkg-deb -R ${package} ${tree} COMMAND_ERROR_IS_FATAL ANY)
-  # As dpkg-gencontrol counts: files in KiB, and 1 KiB for each folder and link.
+  # The size as dpkg-gencontrol computes it: files in KiB, and 1 KiB for each folder and link.
   execute_process(COMMAND bash -c "find '${tree}' -path '${tree}/DEBIAN' -prune -o -type f -printf '%s\\n' -o -printf '1\\n' |
     awk '{sum += int(($1 + 1023) / 1024)} END {print sum}'" OUTPUT_VARIABLE size OUTPUT_STRIP_TRAILING_WHITESPACE
     COMMAND_ERROR_IS_FATAL ANY)

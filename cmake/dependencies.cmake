@@ -11,24 +11,25 @@ find_package(Boost 1.74 REQUIRED) # headers of Boost.Math
 find_package(OpenMP REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(MATIO REQUIRED IMPORTED_TARGET matio)
-# Without the HDF5 that libmatio itself loads: a program with parallel HDF5 must not link the serial one.
+# libmatio's own dependency, serial HDF5, is not linked, because a program with parallel HDF5 must not link it.
 list(FILTER MATIO_LINK_LIBRARIES INCLUDE REGEX "libmatio\\.")
 set_target_properties(PkgConfig::MATIO PROPERTIES INTERFACE_LINK_LIBRARIES "${MATIO_LINK_LIBRARIES}")
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(CRYPTO REQUIRED IMPORTED_TARGET libcrypto)
 
-# HDF5 of the programs without MPI. Debian's serial and parallel builds have the same C interface: their headers differ
-# only in H5pubconf.h, by which the parallel ones include mpi.h and declare the MPI-IO driver (H5Pset_fapl_mpio), and
-# hid_t, hsize_t and all functions that mpi/store calls are the same. So mpi/store is compiled once, with the serial
-# headers, and each program links one of the two (mpi/CMakeLists.txt).
+# HDF5 of the programs without MPI. Debian's serial and parallel builds have the same C interface: hid_t, hsize_t and
+# all functions that mpi/store calls are equal. Their headers differ only in H5pubconf.h. With it, the parallel headers
+# include mpi.h and declare the MPI-IO driver (H5Pset_fapl_mpio). Therefore mpi/store is compiled once, with the serial
+# headers, and each program links one of the two builds (mpi/CMakeLists.txt).
 pkg_check_modules(HDF5_SERIAL hdf5-serial)
 if(NOT TARGET swingbank::hdf5)
   add_library(swingbank::hdf5 INTERFACE IMPORTED GLOBAL)
   if(HDF5_SERIAL_FOUND)
-    file(REAL_PATH ${HDF5_SERIAL_LINK_LIBRARIES} library) # not the folder of Debian's link, which is in no search path
+    # The target of Debian's link, because the folder of the link is in no search path.
+    file(REAL_PATH ${HDF5_SERIAL_LINK_LIBRARIES} library)
     target_include_directories(swingbank::hdf5 SYSTEM INTERFACE ${HDF5_SERIAL_INCLUDE_DIRS})
     target_link_libraries(swingbank::hdf5 INTERFACE ${library})
-  else() # a system with one HDF5, serial or parallel
+  else() # system with only one HDF5, serial or parallel
     find_package(HDF5 REQUIRED COMPONENTS C)
     target_include_directories(swingbank::hdf5 SYSTEM INTERFACE ${HDF5_INCLUDE_DIRS})
     target_link_libraries(swingbank::hdf5 INTERFACE ${HDF5_LIBRARIES})

@@ -1,5 +1,5 @@
-# The installed library: find_package(swingbank) gives a target swingbank::<module> for each module that is not INTERNAL
-# ("swingbank::validate_fit") and three that group them:
+# The installed library. find_package(swingbank) defines a target for each module that is not INTERNAL
+# (swingbank::validate_fit) and three targets for groups of modules:
 #   swingbank::simulation   effects, network and case files, simulators
 #   swingbank::validation   records, playback, estimation, diagnosis, and the effects
 #   swingbank::datasets     simulated datasets
@@ -7,7 +7,7 @@
 set(SWINGBANK_INCLUDE ${CMAKE_INSTALL_INCLUDEDIR}/swingbank)
 set(SWINGBANK_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/swingbank)
 
-# swingbank_export(target path headers...): installs a module's archive and public headers.
+# swingbank_export(target path headers...): installs the archive and the public headers of a module.
 function(swingbank_export target path)
   string(REPLACE / _ name ${path})
   target_include_directories(${target} INTERFACE $<INSTALL_INTERFACE:${SWINGBANK_INCLUDE}>)
@@ -27,7 +27,7 @@ function(swingbank_export_group name regex)
   install(TARGETS swingbank_group_${name} EXPORT swingbank)
 endfunction()
 
-# To be called after all modules are declared.
+# Call this function after all modules are declared.
 function(swingbank_install_package)
   swingbank_export_group(simulation "^swingbank_(base|sim_.*)$")
   swingbank_export_group(validation "^swingbank_(base|sim_(core|library|user_models|plant|grid)|validate_.*)$")
@@ -36,7 +36,7 @@ function(swingbank_install_package)
     set_target_properties(swingbank_${target} PROPERTIES EXPORT_NAME ${target})
     install(TARGETS swingbank_${target} EXPORT swingbank)
   endforeach()
-  # The building blocks of effects serve effects outside the tree as well.
+  # Effects outside the source tree can also use the building blocks of effects.
   install(DIRECTORY sim/effects/detail DESTINATION ${SWINGBANK_INCLUDE}/sim/effects COMPONENT development
     FILES_MATCHING PATTERN *.hpp)
   include(CMakePackageConfigHelpers)

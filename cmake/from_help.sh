@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Generates man pages and completion for bash, zsh and fish from the programs' --help, and the JSON Schemas of files:
-# none is maintained by hand.
+# Generates man pages, completion for bash, zsh and fish, and the JSON Schemas of files from the programs, so that none
+# of these is maintained by hand.
 #   bash cmake/from_help.sh BIN VERSION OUT OTHER...
 # writes OUT/man1/*.1, OUT/{swingbank.bash,_swingbank,swingbank.fish}, OUT/schema/*.json, and OUT/alone/swingbank.1, which
 # does not list OTHER: the programs of another component ("swingbank-train").
@@ -15,12 +15,12 @@ rm -rf "$out"
 mkdir -p "$out/man1" "$out/alone" "$out/help"
 # research/ is not installed.
 "$bin/swingbank" --help | sed '/^Benchmarks:/,/^$/d' >"$out/help/all"
-# "  name  summary" under the headings of the groups
+# Prints the groups' headings and, below each, lines "  name  summary".
 commands() { sed -n 's/^  \([a-z][a-z0-9-]*\)  *\(.*\)/\1\t\2/p' "$out/help/all"; }
 [[ -n $(commands) ]] || { echo "no commands at $bin/swingbank --help (its list is empty): build all commands" >&2; exit 1; }
 
-# help2man separates an option from its description by two spaces; CLI11 leaves one if the option fills its 30
-# columns.
+# Separates an option from its description by two spaces, as help2man requires. CLI11 prints only one space if the
+# option fills its 30 columns.
 two_spaces() {
   awk '
     function say(line) {
@@ -32,8 +32,8 @@ two_spaces() {
     END { say(held) }' "$1"
 }
 
-# page FOLDER PROGRAM HELP SUMMARY SEE-ALSO: the options as --help describes them. help2man runs a program; here one that
-# repeats the text obtained before, as some programs take a second to start.
+# page FOLDER PROGRAM HELP SUMMARY SEE-ALSO: writes the man page of a program. help2man must run a program; here it runs
+# a script that prints the help obtained before, because some programs take a second to start.
 page() {
   two_spaces "$out/help/$3" >"$out/help/said"
   printf '#!/bin/sh\ncat "%s"\n' "$out/help/said" >"$out/help/$2"
@@ -43,9 +43,9 @@ page() {
     --source="swingbank $version" --output="$out/$1/$2.1" "$out/help/$2"
 }
 
-# "<command>\t<option>\t<type>\t<choices>\t<meaning>", a line for each option's name. The type (TEXT, INT, ...) is - for
-# a flag. Choices are those of "--a,--b TEXT:{x,y} ..." or "--mode ENUM:value in {x->0} ...", or -. The meaning ends
-# at its first semicolon.
+# Prints "<command>\t<option>\t<type>\t<choices>\t<meaning>", one line per option name. The type (TEXT, INT, ...) is "-"
+# for a flag. The choices are those of "--a,--b TEXT:{x,y} ..." or "--mode ENUM:value in {x->0} ...", or "-". The
+# meaning ends at its first semicolon.
 options_of() {
   awk -v command="$1" '
     function write_option(    i, count, names) {
@@ -81,7 +81,7 @@ options_of() {
     END { if (option != "") write_option() }' "$out/help/$1"
 }
 
-# words_of COMMAND: "<command>\t<words>" if its first argument is one of several words: "KIND TEXT:{x,y}".
+# words_of COMMAND: prints "<command>\t<words>" if the first argument is one of several words, "KIND TEXT:{x,y}".
 words_of() {
   sed -n '/^Positionals:/,/^$/s/^  [A-Za-z]* TEXT:{\([^}]*\)}.*/\1/p' "$out/help/$1" | head -n 1 | tr ',' ' ' | sed "s/^/$1\t/"
 }
@@ -96,7 +96,7 @@ while IFS=$'\t' read -r command summary; do
   [[ $others == *" swingbank-$command "* ]] || see_also_alone+=".BR swingbank-$command (1)"$'\n'
 done < <(commands)
 page man1 swingbank all "power-plant model validation at scale" "$see_also"
-# without the lines of the others, and without a heading that has no line left
+# removes the lines of the other component's commands, and then each heading without lines
 awk -v others="$others" '
   /^  [a-z]/ && index(others, " swingbank-" $1 " ") { next }
   /^[A-Z].*:$/ && $0 !~ /^Usage/ { heading = $0; next }
@@ -105,7 +105,7 @@ awk -v others="$others" '
   { print }' "$out/help/all" >"$out/help/alone"
 page alone swingbank alone "power-plant model validation at scale" "$see_also_alone"
 
-# with_template FILE: OUT/FILE of the text from standard input and of cmake/completion/FILE below its line "# ---".
+# with_template FILE: writes OUT/FILE, which consists of standard input and the part of cmake/completion/FILE below "# ---"
 with_template() {
   cat - <(sed '1,/^# ---/d' "$(dirname "${BASH_SOURCE[0]}")/completion/$1") >"$out/$1"
 }

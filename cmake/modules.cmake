@@ -3,11 +3,10 @@
 #   swingbank_module(validate/fit [INTERNAL] [KIND hot|cold|train] [USES module...] [INSIDE module...] [LINK target...] [SOURCES file...])
 # USES: modules whose headers this module's public headers include. INSIDE: modules that only its sources include.
 # KIND: `hot` (default) is fully optimised; `cold` is not (readers, reports, commands); `train` includes LibTorch's
-# headers. INTERNAL: not part of the installed library (find_package(swingbank)), which has every other module with
-# its public headers.
-# Files in <module>/detail/ are private: no other module can include them. Each module has two include roots in the
-# build folder, made of links: `public` has its public headers, `own` the whole module. A target sees its own module
-# and the public headers of the modules that it names; any other include does not compile.
+# headers. INTERNAL: the module is not part of the installed library (find_package(swingbank)). Files in
+# <module>/detail/ are private: no other module can include them. Each module has two include folders in the build
+# folder, which consist of links: `public` contains its public headers, `own` the whole module. A target sees its own
+# module and the public headers of the modules that it names; any other include does not compile.
 function(swingbank_module path)
   cmake_parse_arguments(A "INTERNAL" "KIND" "USES;INSIDE;LINK;SOURCES" ${ARGN})
   string(REPLACE / _ name ${path})
@@ -47,5 +46,5 @@ function(swingbank_module path)
   if(NOT A_INTERNAL)
     swingbank_export(${module} ${path} ${headers})
   endif()
-  set_property(TARGET ${module} PROPERTY SWINGBANK_INSIDE "${A_INSIDE}") # its tests see what its sources see
+  set_property(TARGET ${module} PROPERTY SWINGBANK_INSIDE "${A_INSIDE}") # for its tests, which see the same headers
 endfunction()

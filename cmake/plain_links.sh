@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Turns the links of installed documents that lead to no installed file into plain text: sources are not installed. The
-# path follows the text unless the text names it.
+# Replaces links in installed documents by plain text if their target is not installed, such as a source file. The path
+# follows the link text unless the text contains it.
 #   bash cmake/plain_links.sh FOLDER...     changes the Markdown files below these folders
 set -euo pipefail
 

@@ -1,8 +1,9 @@
-# Headers that most sources include, parsed once per kind of target. A preset without them (SWINGBANK_PRECOMPILE=OFF)
-# reveals missing includes.
+# Precompiled headers: headers that most sources include, parsed once per kind of target. A build without them
+# (SWINGBANK_PRECOMPILE=OFF) reveals missing includes.
 option(SWINGBANK_PRECOMPILE "Parse the headers of the standard library, fmt, Eigen and others once" ON)
 
-# swingbank_precompiled(kind targets... HEADERS <header>...): the targets provide include folders and options.
+# swingbank_precompiled(kind targets... HEADERS <header>...): precompiles headers with the include folders and options
+# of the targets.
 function(swingbank_precompiled kind)
   cmake_parse_arguments(A "" "" "HEADERS" ${ARGN})
   if(NOT SWINGBANK_PRECOMPILE)
@@ -15,7 +16,7 @@ function(swingbank_precompiled kind)
   target_precompile_headers(swingbank_precompiled_${kind} PRIVATE ${A_HEADERS})
 endfunction()
 
-# swingbank_precompile(target kind)
+# swingbank_precompile(target kind): uses the precompiled headers of a kind in a target.
 function(swingbank_precompile target kind)
   if(TARGET swingbank_precompiled_${kind})
     target_precompile_headers(${target} REUSE_FROM swingbank_precompiled_${kind})

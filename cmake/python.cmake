@@ -1,7 +1,7 @@
 # Interpreter and pybind11 of the Python package. SWINGBANK_PYTHON_FOUND: the package is built.
 set(SWINGBANK_PYTHON_FOUND FALSE)
 if(SWINGBANK_PYTHON)
-  # Debian's interpreter, for which the packages of packages.txt are installed, not another one of the PATH.
+  # Debian's interpreter instead of another one in the PATH: the packages of packages.txt are installed for it.
   if(EXISTS /usr/bin/python3 AND NOT DEFINED Python_EXECUTABLE)
     set(Python_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "Interpreter of the Python package")
   endif()

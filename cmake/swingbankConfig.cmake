@@ -1,4 +1,4 @@
-# find_package(swingbank): the targets are those of export.cmake.
+# Configuration for find_package(swingbank); export.cmake describes the targets.
 if(NOT CMAKE_C_COMPILER_LOADED)
   enable_language(C) # for the search of HDF5
 endif()

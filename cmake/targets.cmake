@@ -1,18 +1,17 @@
 # Compiler flags, and the declaration of commands.
-# swingbank_options contains the options that programs linking the installed library need too, because Eigen's
-# alignment and inline functions depend on them. swingbank_build contains the others.
+# swingbank_options contains the options on which Eigen's alignment and inline functions depend; programs that link the
+# installed library need them too. swingbank_build contains the other options.
 add_library(swingbank_options INTERFACE)
 add_library(swingbank_build INTERFACE)
 target_link_libraries(swingbank_options INTERFACE $<BUILD_INTERFACE:swingbank_build>)
 target_compile_features(swingbank_options INTERFACE cxx_std_20)
 target_compile_options(swingbank_options INTERFACE -fno-math-errno -fno-trapping-math)
 target_compile_options(swingbank_build INTERFACE -Wall -Wextra -Wshadow
-  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # lets ccache work beside precompiled headers
-# Events, hypotheses and ranks share the cores; Eigen's own threads would compete with them.
+  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>) # ccache needs it with precompiled headers
+# Events, hypotheses and ranks run in parallel; Eigen's own threads would compete with them for the cores.
 target_compile_definitions(swingbank_options INTERFACE EIGEN_DONT_PARALLELIZE)
-# GCC 12 gives false warnings about its own precompiled headers: avx512fintrin.h wherever Eigen multiplies matrices
-# (GCC bug 105593), std::string wherever two are concatenated (bug 105329). clang (tests/fuzz, clang-tidy) still
-# reports them.
+# With precompiled headers, GCC 12 gives false warnings: about avx512fintrin.h for Eigen's matrix products (GCC bug
+# 105593), and about concatenations of std::string (bug 105329). clang (tests/fuzz, clang-tidy) still reports them.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(swingbank_build INTERFACE -Wno-maybe-uninitialized -Wno-uninitialized -Wno-array-bounds
     -Wno-stringop-overflow -Wno-stringop-overread -Wno-restrict)
@@ -23,14 +22,14 @@ endif()
 if(SWINGBANK_COUNT_FLOPS)
   target_compile_definitions(swingbank_build INTERFACE SWINGBANK_COUNT_FLOPS)
 endif()
-# The Python extension is a shared library. Without interposition the compiler still inlines across functions.
+# The Python extension is a shared library. This option lets the compiler inline functions there too.
 if(SWINGBANK_PYTHON_FOUND)
   target_compile_options(swingbank_build INTERFACE -fPIC -fno-semantic-interposition)
 endif()
 if(SWINGBANK_WERROR)
   target_compile_options(swingbank_build INTERFACE -Werror)
 endif()
-# LLVM's linker if available: the same programs in a fifth of the time. It does not support GCC's link-time
+# LLVM's linker, if available, links the same programs in a fifth of the time. It does not support GCC's link-time
 # optimisation.
 find_program(LLD ld.lld)
 if(LLD AND NOT SWINGBANK_ODR)
@@ -45,8 +44,9 @@ if(SWINGBANK_FUZZ)
 endif()
 
 # Three kinds of sources: `hot` is simulation and fitting; `cold` is input, output and messages; `train` is LibTorch
-# code. Cold is not below -O2: the program contains each inline function once, compiled with either kind's options,
-# and below -O2 GCC makes no fused multiply-adds. The last bit of a result would then depend on the linker's choice.
+# code. Cold sources need at least -O2: a program contains each inline function once, compiled with the options of
+# either kind, and below -O2 GCC generates no fused multiply-adds. The last bit of a result would then depend on the
+# linker's choice.
 add_library(swingbank_hot INTERFACE)
 target_compile_options(swingbank_hot INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 target_link_libraries(swingbank_hot INTERFACE swingbank_options fmt::fmt Eigen3::Eigen OpenMP::OpenMP_CXX)
@@ -57,19 +57,21 @@ add_library(swingbank_train INTERFACE)
 target_link_libraries(swingbank_train INTERFACE swingbank_options fmt::fmt nlohmann_json::nlohmann_json OpenMP::OpenMP_CXX)
 target_compile_options(swingbank_train INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 
-# swingbank_parallel_hdf5(targets...): these use mpi/ranks and link its parallel HDF5, others the serial one.
+# swingbank_parallel_hdf5(targets...): links parallel HDF5 for these targets, which use mpi/ranks. All others link
+# serial HDF5.
 function(swingbank_parallel_hdf5)
   set_target_properties(${ARGN} PROPERTIES SWINGBANK_PARALLEL_HDF5 ON)
 endfunction()
 
-# swingbank_own_headers(folder): an include root modules/<folder>/own with the headers of a folder of commands.
+# swingbank_own_headers(folder): creates the include folder modules/<folder>/own with the headers of a folder of
+# commands.
 function(swingbank_own_headers folder)
   file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/modules/${folder}/own)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${folder} ${PROJECT_BINARY_DIR}/modules/${folder}/own/${folder} SYMBOLIC)
 endfunction()
 
-# swingbank_program(name [KIND train] [COMPONENT component]): bin/<name>, one program with several commands
-# (jobs/run_command.cpp) of this folder. It is installed if it has a component (install.cmake).
+# swingbank_program(name [KIND train] [COMPONENT component]): declares bin/<name>, a program with several commands of
+# this folder (jobs/run_command.cpp). It is installed if it has a component (install.cmake).
 function(swingbank_program name)
   cmake_parse_arguments(A "" "KIND;COMPONENT" "" ${ARGN})
   cmake_path(GET CMAKE_CURRENT_SOURCE_DIR FILENAME folder)
@@ -114,7 +116,8 @@ function(swingbank_command name)
   endif()
 endfunction()
 
-# Writes the tables of the commands, in the order of their declaration: all for the dispatcher, and those of each program.
+# Writes the tables of the commands, in the order of declaration: one with all commands for the dispatcher, and one for
+# each program.
 function(swingbank_command_tables)
   get_property(table GLOBAL PROPERTY SWINGBANK_COMMANDS)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/commands/commands.inc CONTENT "${table}" @ONLY)
@@ -127,8 +130,8 @@ function(swingbank_command_tables)
   endforeach()
 endfunction()
 
-# swingbank_embed(target header function files...): makes files part of a target. `function` is declared by the header,
-# with its type, and returns the name and the content of a file by its name.
+# swingbank_embed(target header function files...): embeds files in a target. `function` contains the return type and
+# the name of a function that the header declares; it returns a file's name and content by its name.
 function(swingbank_embed target header function)
   set(places "")
   set(symbols "")
@@ -151,7 +154,7 @@ asm(\".section .rodata\\n\"
 @names@  return {};
 }
 " @ONLY)
-  # Alone in its object: a unity source would not have these dependencies.
+  # A separate object file, because a unity source would not have these dependencies.
   set_source_files_properties(${out} PROPERTIES OBJECT_DEPENDS "${ARGN}" SKIP_UNITY_BUILD_INCLUSION ON)
   target_sources(${target} PRIVATE ${out})
 endfunction()

@@ -1,14 +1,14 @@
 # Registers the tests of one program when ctest starts. The fast tier has one process per suite, because starting a
-# process costs more than most tests. Suites that end in Full or Nightly (labels full and nightly) contain long tests:
-# they have one process per test and so are spread over the cores. Input: module, program, list (written here if it is
-# older than the program), whole (the fast tier is registered already).
+# process costs more than most tests. Suites whose names end in Full or Nightly (labels full and nightly) contain long
+# tests; they have one process per test, so that ctest distributes them over the cores. Input: module; program; list
+# (file that this script writes if it is older than the program); whole (the fast tier is registered already).
 function(write_suites)
   execute_process(COMMAND ${program} --gtest_list_tests TIMEOUT 120 OUTPUT_VARIABLE said RESULT_VARIABLE failed)
   if(failed)
     message(FATAL_ERROR "tests cannot be listed at ${program} (${failed}): run it with --gtest_list_tests\n${said}")
   endif()
   set(text "# Made by tests/suites.cmake.\n")
-  # The value of a test parameter follows a #; it may contain characters that a CMake list must not.
+  # Removes the values of test parameters, which follow a #: they may contain characters that a CMake list must not.
   string(REGEX REPLACE " +#[^\n]*" "" said "${said}")
   string(REPLACE "\n" ";" lines "${said}")
   foreach(line IN LISTS lines)

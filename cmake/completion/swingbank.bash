@@ -1,4 +1,4 @@
-# Completion of `swingbank`; from_help.sh puts the tables of commands, options and choices before it.
+# bash completion of `swingbank`. from_help.sh writes the tables of commands and options before the part below "---".
 # shellcheck disable=SC2034,SC2154
 # ---
 _swingbank() {
@@ -12,7 +12,7 @@ _swingbank() {
   elif [[ $word == -* ]]; then
     words=${_swingbank_options["$command"]-}
   fi
-  # Without words, files are completed (-o default).
+    # Without matching words, bash completes file names (-o default).
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
 }
 complete -o default -F _swingbank swingbank

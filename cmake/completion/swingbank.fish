@@ -1,6 +1,6 @@
-# fish completion of `swingbank`; from_help.sh puts the lines of the commands and their options after it.
+# fish completion of `swingbank`. from_help.sh writes the lines of the commands and their options.
 # ---
-# Whether words 2 and on before the cursor begin with the arguments, of which there may be none.
+# Returns whether the words before the cursor, from the second on, begin with the arguments, if there are any.
 function __swingbank_words
     set -l words (commandline -opc)[2..-1]
     test (count $argv) -eq 0 -a (count $words) -eq 0
