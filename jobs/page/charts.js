@@ -1,13 +1,13 @@
-// Curves of one event: measured, submitted model and this model, with cursors that move together.
+// Curves of one event: measured, submitted model and current model, with synchronised cursors.
 /* global curves, uPlot */
 import { by, make } from "./format.js";
 
 const { colour } = curves;
 const sync = uPlot.sync("event");
 const charts = [];
-let moving = 0; // number of the present animation; another number ends it
+let moving = 0; // number of the current animation; a new number ends it
 
-/** Splits the samples of api.curves() into t and, for each channel, measured, modelled and the limits of its 95 % band. */
+/** Splits the samples of api.curves() into t and, for each channel, measured and modelled samples and 95 % band. */
 export function split(samples, channels) {
   const n = samples.length / (1 + 3 * channels);
   const part = (k) => samples.subarray(k * n, (k + 1) * n);
@@ -84,11 +84,11 @@ export function model(samples) {
 function put(channel, samples) {
   const c = charts[channel];
   if (!c) return;
-  c.of.band = null; // of the former curve
+    c.of.band = null; // it belongs to the previous curve
   c.of.data = [c.of.data[0], c.of.data[1], c.of.data[2], samples];
   if (c.plot.root.offsetParent !== null) (c.plot.setData(c.of.data, false), c.plot.redraw(true, false));
 }
-/** Moves the modelled curves from where they are to the new samples. */
+/** Animates the modelled curves from their present shape to the new samples. */
 export function animate(next, done = () => {}) {
   const start = charts.map((c) => c.of.data[3]);
   const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -112,10 +112,10 @@ export function animate(next, done = () => {}) {
   };
   requestAnimationFrame(frame);
 }
-/** The shown data of each chart: t, measured, submitted, this model. For tests. */
+/** Returns the data of each chart: t, measured, submitted model, current model. For tests. */
 globalThis.charts_of_test = () => charts.map((c) => c.of.data);
 globalThis.bands_of_test = () => charts.map((c) => c.of.band);
-/** Shows the times from..to [s] in every chart; without arguments, the whole record. */
+/** Shows the times `from` to `to` [s] in every chart; without arguments, the whole record. */
 export function zoom(from, to) {
   for (const c of charts) {
     const t = c.of.data[0];
@@ -129,7 +129,7 @@ export function bands(all) {
     c.plot.redraw(false);
   });
 }
-/** Shades a window [from, to] or nothing in each chart. */
+/** Shades the window [from, to] of each chart, if it has one. */
 export function shade(windows) {
   charts.forEach((c, k) => {
     c.of.window = windows[k];
@@ -140,7 +140,7 @@ export function choose(channel) {
   charts.forEach((c, k) => c.plot.root.parentElement.classList.toggle("chosen", k === channel));
   if (channel > 1) by("more").open = true;
 }
-/** Shows the range of each channel between two responses; null: none. */
+/** Shows the area between two responses of each channel; null: none. */
 export function ribbon(ranges) {
   charts.forEach((c, k) => {
     c.of.range = ranges?.[k];
@@ -156,7 +156,7 @@ by("more").addEventListener("toggle", () => {
   for (const c of charts) (c.plot.setData(c.of.data, false), c.plot.redraw(true));
 });
 
-/** Small curve of an inferred input. */
+/** Draws a small curve of an inferred input. */
 export function small(place, title, t, values) {
   const axis = { stroke: colour("soft"), grid: { stroke: colour("line"), width: 1 }, ticks: { show: false } };
   const box = make("div", { className: "chart" });

@@ -55,7 +55,8 @@ export function moving(event, errors) {
   }
 }
 
-// Blue to vermilion, as multiples of the bound for noise: colour-blind readers tell them apart, and a star says the same.
+// Colours from blue to vermilion by the multiple of the noise bound. Colour-blind readers can distinguish them; a star
+// marks values above the bound.
 function shade(share) {
   const dark = matchMedia("(prefers-color-scheme: dark)").matches;
   if (!(share > 1)) return dark ? "#16324a" : "#dcecf7";

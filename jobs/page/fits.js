@@ -18,7 +18,7 @@ export function progress(message) {
   else bar.removeAttribute("value");
   by("progress").querySelector("span").textContent = message.text;
 }
-/** Draws the fall of the error: reduced chi-square of each better fit, on a logarithmic axis. */
+/** Draws the decrease of the error: reduced chi-square of each better fit, on a logarithmic axis. */
 const fall = [];
 export function reached(message) {
   fall.push(message.chi2);
@@ -34,12 +34,12 @@ export function reached(message) {
     `<svg viewBox="0 0 ${w} ${h}" role="img" aria-label="fall of the error">` +
     `<polyline points="${points}" fill="none" stroke="currentColor" stroke-width="2"/><text x="${x(fall.length - 1) + 6}" y="${y(fall.at(-1)) + 4}">χ² ${digits(fall.at(-1), 3)}</text></svg>`;
 }
-/** Removes the fall of the error. */
+/** Removes the drawing of the error. */
 export function clearFall() {
   fall.length = 0;
   by("fall").replaceChildren();
 }
-/** Removes the results of the former diagnosis. */
+/** Removes the results of the previous diagnosis. */
 export function clear() {
   candidates = [];
   clearFall();
@@ -56,7 +56,7 @@ function inputs(message, event, unit) {
   if (side !== "mechanical") show("field", `Missing field voltage [pu]${unit}`);
   if (side !== "excitation") show("torque", `Missing torque [pu]${unit}`);
 }
-/** Shows a preliminary or final result. `add(effect)` adds a candidate. */
+/** Shows a preliminary or final result. `add(effect)`: function that adds a candidate to the model. */
 export function result(message, event, add) {
   const final = message.type === "diagnosis";
   by("said").textContent = message.sentence;
@@ -95,7 +95,7 @@ export function result(message, event, add) {
     );
   }
 }
-/** Says how the error changed, what else moved, and what to do next. */
+/** Returns a text on the change of the error, other changes and the next action. */
 export function summary(m, before, events) {
   const said = [
     m.ratio < before

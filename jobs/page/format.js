@@ -1,12 +1,12 @@
-// Texts of numbers, and small helpers for elements.
+// Formatting of numbers, and small functions for HTML elements.
 
-/** Three or four significant digits without an exponent where possible. */
+/** Returns a number with three or four significant digits, without an exponent if possible. */
 export function digits(v, n = 4) {
   if (v === null || v === undefined || !Number.isFinite(v)) return "–";
   const text = Number(v).toPrecision(n);
   return text.includes("e") ? text : String(Number(text));
 }
-/** "1.4 ×", "86 ×" */
+/** Returns a ratio as "1.4 ×" or "86 ×". */
 export function times(ratio) {
   if (ratio === null || !Number.isFinite(ratio)) return "–";
   return (ratio < 9.95 ? ratio.toFixed(1) : ratio.toFixed(0)) + " ×";
@@ -21,7 +21,7 @@ export function make(tag, properties = {}, ...children) {
   e.append(...children);
   return e;
 }
-/** Level of a channel: good (noise), warn (more than noise, within the limits), bad (exceeds a limit). */
+/** Returns a channel's level: good (only noise), warn (more than noise, within limits), bad (exceeds a limit). */
 export function level(chip) {
   if (chip.limit > 1) return "bad";
   return chip.bound > 1 && chip.judged ? "warn" : "good";

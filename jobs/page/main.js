@@ -1,4 +1,4 @@
-// The live page: state, and what each action does.
+// The live page: its state and its actions.
 import * as api from "./api.js";
 import * as charts from "./charts.js";
 import * as chips from "./chips.js";
@@ -57,21 +57,21 @@ const windowOf = (chip) => {
 };
 const windows = () => chipsOf(state.step, state.event).map(windowOf);
 
-/** Returns the measured curve less and more the maximum error (MXE) that the limits allow before, in and after the fault. */
+/** Returns the measured curve minus and plus the maximum error (MXE) allowed before, in and after the fault. */
 function allowed(largest, times_, t, measured) {
   if (!largest || !times_.length) return null;
   const size = t.map((at) => largest[at < times_[0] ? 0 : at <= times_.at(-1) ? 1 : 2]);
   return [measured.map((v, k) => v - size[k]), measured.map((v, k) => v + size[k])];
 }
 
-/** Writes the largest half width of the 95 % bands of P and Q, which is often less than the width of a line. */
+/** Writes the largest half width of the 95 % bands of P and Q, because a band is often narrower than a line. */
 function showBandSize(own, channels) {
   by("band-size").textContent = own
     .slice(0, 2)
     .flatMap((c, k) => (channels[k].band ? `${c.name} ± ${digits(channels[k].widest, 2)} ${c.unit}` : []))
     .join(", ");
 }
-/** Shows the event's curves of the present step. */
+/** Shows the event's curves of the current step. */
 async function showEvent() {
   const { event: e, step } = state;
   const [ghost, now] = [await curvesOf(0, e), await curvesOf(step.step, e)];
@@ -106,7 +106,7 @@ function near() {
   else charts.zoom();
 }
 
-/** Shows one window of one channel, with a fifth of it on both sides. */
+/** Shows one window of one channel, with a margin of a fifth of the window on both sides. */
 function enlarge(channel, from, to) {
   const margin = 0.2 * (to - from);
   charts.zoom(from - margin, to + margin);
@@ -145,7 +145,7 @@ function showSteps() {
   by("undo").disabled = !state.past.length;
   by("redo").disabled = !state.future.length;
 }
-/** Shows a command line; `model.toml` is a file that has to be saved first. */
+/** Shows a command line. If it contains `model.toml`, the model has to be saved first. */
 function showCommand(text) {
   by("command").textContent = text;
   by("first").hidden = !/ --model model\.toml\b/.test(text);
@@ -170,7 +170,7 @@ function showStep() {
     );
 }
 
-/** Makes a step the present one; its curves move from those shown. */
+/** Makes a step the current one; the curves move from the shown ones to its own. */
 async function enter(step, keepPast = false) {
   if (!keepPast) {
     state.past.push(state.step.step);
@@ -234,7 +234,7 @@ function hold(event, on) {
   chips.build(state, guard(choose));
 }
 
-// --- sliders: one preview is under way at a time; a newer value replaces a waiting one
+// --- sliders: one preview is computed at a time; a newer value replaces a waiting one
 let flying = false,
   waiting = false;
 async function fly() {
@@ -268,7 +268,7 @@ async function fly() {
     fly();
   }
 }
-/** Shows what ± 10 % of a parameter does, while the pointer or the keyboard is at it. */
+/** Shows the effect of ± 10 % of a parameter while the pointer or the keyboard focus is at it. */
 let pointed = "";
 const point = guard(async (name) => {
   pointed = name;
@@ -307,7 +307,7 @@ async function compareChanged() {
   }
 }
 const settled = guard(() => (state.trying = compareChanged()));
-/** An action on the present step: it waits for the actions before it, and for the comparison of a changed value. */
+/** Returns an action on the current step. It waits for earlier actions and for the comparison of a changed value. */
 let before = Promise.resolve();
 const onStep = (action) => {
   const guarded = guard(async (...words) => {
@@ -337,7 +337,7 @@ async function start(request) {
   }
 }
 const add = onStep((effect) => start({ kind: "add", effect }));
-/** Adds a candidate to the model that was diagnosed, which need not be the present one. */
+/** Adds a candidate to the diagnosed model, which may differ from the current one. */
 const addCandidate = onStep(async (effect) => {
   if (state.diagnosed !== null && state.diagnosed !== state.step.step) await goTo(state.diagnosed);
   await start({ kind: "add", effect });
@@ -442,7 +442,7 @@ function lost(error) {
   by("said").textContent = error.message;
   fail(error);
 }
-/** Returns to the step and the held-out events that this tab had before it was loaded again. */
+/** Restores the step and the held-out events of this tab after a reload. */
 async function restore(steps) {
   for (const name of JSON.parse(sessionStorage.getItem("heldOut") ?? "[]"))
     if (state.setup.events.some((e) => e.name === name)) state.heldOut.add(name);
@@ -450,7 +450,7 @@ async function restore(steps) {
   const last = steps.find((s) => String(s.step) === sessionStorage.getItem("step"));
   if (last) await enter(last);
 }
-/** Replaces the first look by the comparison with fitted switching times. */
+/** Replaces the provisional comparison by the comparison with fitted switching times. */
 async function compareSubmitted() {
   const full = await api.submitted();
   state.setup = full.setup;
@@ -470,7 +470,7 @@ async function begin() {
   by("plant").textContent = state.setup.name;
   by("subject").textContent = `${state.setup.subject}, ${digits(state.setup.mva)} MVA · limits ${state.setup.limits}`;
   document.title = `${state.setup.name} – Swingbank`;
-  // the worst event first: P and Q are the channels that the limits judge
+    // Show the worst event first; the limits concern the channels P and Q.
   const judged = state.step.chips.filter((c) => c.judged && c.channel < 2);
   const worst = judged.reduce((a, b) => ((b.ratio ?? 0) > (a.ratio ?? 0) ? b : a), judged[0]);
   state.event = worst?.event ?? 0;

@@ -1,4 +1,4 @@
-// Sliders of the parameters, grouped by block; logarithmic where the parameter is positive.
+// Sliders of the parameters, grouped by block; logarithmic if the parameter is positive.
 import { by, digits, make } from "./format.js";
 
 const kSteps = 1000;
@@ -10,7 +10,7 @@ const place = (p, v) => {
   return Math.max(0, Math.min(1, share));
 };
 const value = (p, share) => (p.log ? p.low * (p.high / p.low) ** share : p.low + (p.high - p.low) * share);
-// The thumb's centre moves within the track less one thumb.
+// The range of the thumb's centre is the track's width minus one thumb.
 const left = (share) => `calc(${share} * (100% - var(--thumb)) + var(--thumb) / 2)`;
 
 function row(p, moved, settled, point) {
@@ -86,7 +86,10 @@ function row(p, moved, settled, point) {
   return element;
 }
 
-/** Builds the sliders of a step. `moved(name, value)` while dragging, `settled(name)` after it; `point(name)` at a name. */
+/**
+ * Builds the sliders of a step. Calls `moved(name, value)` while a slider is dragged, `settled(name)` after that, and
+ * `point(name)` when the pointer is at a name.
+ */
 export function build(step, moved, settled, point) {
   const focus = document.activeElement?.id;
   const open = new Map([...by("sliders").querySelectorAll("details")].map((d) => [d.dataset.block, d.open]));
