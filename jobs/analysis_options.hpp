@@ -135,7 +135,7 @@ struct AnalysisOptions {
       fmt::print(stderr, "note: started from the values before that calibration\n");
     return plant::as_submitted(std::move(loaded));
   }
-  /// Adds to the model the names of those --law files whose user-defined models it uses.
+  /// Adds to the model the names of the --law files that define its user-defined models.
   void keep_user_models(validate::plant::PlantModel& of) const {
     for (const auto& [file, effect] : user_models)
       for (const auto& block : of.plant.controls)

@@ -67,8 +67,7 @@ class GroupedHelp : public CLI::Formatter {
     return text + "\n" + make_footer(app);
   }
   /// Omits the list of excluded options, which may be long; the error message names the excluded options that
-  /// were given. Keeps the dots, which mean several values, only if these may follow a single mention of the
-  /// option.
+  /// were given. Keeps the dots ("...") only if one mention of the option accepts several values.
   std::string make_option_opts(const CLI::Option* option) const override {
     std::string text = CLI::Formatter::make_option_opts(option);
     constexpr std::string_view kSeveral = " ...";

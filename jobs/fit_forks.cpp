@@ -124,7 +124,7 @@ std::optional<int> receive_socket(int control) {
       ::close(control);
       run_fit(work, *socket);
     }
-    ::close(*socket);  // after a failed fork, the server thus reads the end of the fit
+    ::close(*socket);  // if the fork failed, the server reads end-of-file, as after a fit
   }
   ::_exit(0);
 }

@@ -23,10 +23,10 @@ void declare_fleet(CommandLine& line, FleetCommand& command);
 /// Returns the command as arguments of these options.
 std::vector<std::string> fleet_words(const FleetCommand& command);
 
-/// Diagnoses every plant on the ranks and prints the table. The process of a plant is `swingbank-diagnose
-/// --plant` in this program's folder; it prints {"was_there", "row"}. Returns the exit code, the same on all
-/// ranks: 0 if all plants are complete, 3 if a plant is not, 1 if a plant failed or the input is invalid, 2
-/// after a stop signal.
+/// Diagnoses every plant on the ranks and prints the table. Each plant is diagnosed by a process
+/// `swingbank-diagnose --plant` of this program's folder, which prints {"was_there", "row"}. Returns the exit
+/// code, the same on all ranks. 0: all plants are complete; 3: a plant is not; 1: a plant failed or the input
+/// is invalid; 2: stop signal.
 int run_fleet(const FleetCommand& command, const mpi::items::Ranks& ranks);
 
 }  // namespace swingbank::jobs

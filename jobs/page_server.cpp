@@ -371,7 +371,7 @@ void PageServer::State::routes() {
 
 PageServer::PageServer(PageParts parts, int port) : state_(std::make_unique<State>()) {
   state_->parts = std::move(parts);
-  state_->routes();  // before the socket is created, because it uses options that are set there
+  state_->routes();  // sets socket options, so before the socket is created
   const char* const here = "127.0.0.1";
   if (port == 0)
     state_->port = state_->http.bind_to_any_port(here);

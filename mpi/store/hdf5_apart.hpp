@@ -10,10 +10,10 @@
 
 namespace swingbank::mpi::store::h5 {
 
-/// Reads a file in the reading process: returns the requested objects that exist, as bytes. A name is that of
-/// an array ("/records"), of an array with the type to convert to ("f8/time"), or of an attribute of the root
-/// group with its kind ("text@format", "real@rate", "integer@seed"). Throws InputError if the file cannot be
-/// read.
+/// Reads a file in the reading process: returns the requested objects that exist, as bytes. A name denotes an
+/// array ("/records"), or an array with the type to convert to ("f8/time"). It may also denote an attribute
+/// of the root group, with its kind ("text@format", "real@rate", "integer@seed"). Throws InputError if the
+/// file cannot be read.
 std::string read_asked(const std::filesystem::path& file, const std::vector<std::string>& names);
 
 /// Objects in these bytes, in the calling process.

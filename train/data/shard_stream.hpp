@@ -105,8 +105,8 @@ class ShardStream {
   StreamOptions options_;
   RecordNoise noise_;
   Labels labels_;
-  std::vector<float> series_;   ///< the series, or
-  std::vector<float> records_;  ///< the stored records, if the noise varies; both empty if they do not fit
+  std::vector<float> series_;   ///< series of all rows, if the noise is fixed and they fit
+  std::vector<float> records_;  ///< records of all rows, if the noise varies and they fit
 };
 
 /// Returns the order in which an epoch visits `rows` (ascending). Blocks of 256 neighbouring rows are

@@ -1,7 +1,7 @@
 #pragma once
 // Split of the rows into training, validation and test. Rows that share a databank sample (the same parameter
 // values) or an event are in the same part. Thus training contains neither a test sample with another fault
-// nor a test event at another machine. Rows with numbers from Labels::judged are for training only.
+// nor a test event at another machine. Rows whose number is at least Labels::judged are for training only.
 #include <cstdint>
 #include <optional>
 #include <vector>

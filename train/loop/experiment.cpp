@@ -25,8 +25,8 @@ std::vector<std::string> network_names() {
   return names;
 }
 
-/// Treatment of a missing key: it is a problem, it has a default, or its value is that of the preset (in a
-/// network's table).
+/// Treatment of a missing key: `refused` is a problem, `standard` uses a default, `inherited` uses the
+/// preset's value (in a network's table).
 enum class Missing { refused, standard, inherited };
 
 /// Reader of the keys of one table.

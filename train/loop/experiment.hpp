@@ -79,8 +79,8 @@ struct Experiment {
   std::string title;
   std::filesystem::path dataset;           ///< config of the dataset
   std::filesystem::path training_dataset;  ///< config of rows that only train; empty: none
-  bool leave_one_out = false;              ///< leave-one-out split; otherwise 60/20/20, or
-  bool across = false;                     ///< the test on the whole dataset after training on the other
+  bool leave_one_out = false;              ///< leave-one-out split; if neither: 60/20/20
+  bool across = false;                     ///< trains on training_dataset, tests on the whole `dataset`
   std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out; empty for a split
   std::map<std::string, Preset> presets;
 

@@ -14,7 +14,7 @@ inline constexpr std::size_t kFactors = 4;     ///< number of factors of the cop
 struct Mixture {
   std::array<double, kComponents> weight{}, mean{}, deviation{};
   [[nodiscard]] double cdf(double x) const;
-  /// Returns the quantile whose probability is that of a standard normal variable below `score`; relative
+  /// Returns the quantile at the probability Phi(score), with the standard normal distribution Phi; relative
   /// accuracy 1e-9.
   [[nodiscard]] double quantile_of_score(double score) const;
 };

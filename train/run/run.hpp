@@ -42,8 +42,8 @@ struct RunRequest {
 enum class RunOutcome { done, already_done, stopped };
 
 /// Trains, scores and writes the JSON of train/run/README.md. Continues from a checkpoint of the same run.
-/// Throws InputError if a result with this name belongs to another run or other software, if the checkpoint
-/// belongs to another run, other software or kernels, or if another process works on this run (RunLock).
+/// Throws InputError if the existing result or checkpoint belongs to another run or other software, or if
+/// another process works on this run (RunLock). A checkpoint must also have the same kernels.
 /// Collective over the ranks, which have the same request and dataset; only rank 0 scores and writes files.
 RunOutcome run(const data::ShardStream& stream, const RunRequest& request);
 

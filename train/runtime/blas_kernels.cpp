@@ -48,8 +48,8 @@ constexpr std::array<std::string_view, 16> kNarrow = {
     "Katmai",     "Coppermine", "Northwood", "Prescott", "Banias",       "Atom",      "Core2",  "Penryn",
     "Dunnington", "Nehalem",    "Athlon",    "Opteron",  "Opteron_SSE3", "Barcelona", "Bobcat", "Nano"};
 
-/// Returns the kernels of this name; nullptr for a name of a later version. That library's own choice is then
-/// kept and measured.
+/// Returns the kernels of this name; nullptr for a name that only a later version of OpenBLAS has. The
+/// library's own choice is then kept and measured.
 const Core* core_of(std::string_view name) {
   static constexpr Core narrow{"", Width::sse};
   for (const Core& core : kWide)

@@ -25,7 +25,7 @@ struct BlindKind {
   bool value = false;                       ///< true: nothing is missing, but values of the model are wrong
   std::vector<std::string> base;            ///< controls in the model: "EFFECT[:PARAM=VALUE,...]"
   std::vector<std::string> hidden;          ///< effects that the model lacks, in the same form
-  std::vector<std::string> accepted_names;  ///< accepted names; for wrong values EFFECT.PARAM, all of them
+  std::vector<std::string> accepted_names;  ///< names that count as right; if `value`: all are needed
   std::vector<BlindPath> path;
   bool logarithmic = false;  ///< whether the scale is linear in the parameters' logarithms
   /// Returns whether the effect is an instrument error.

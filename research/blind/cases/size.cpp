@@ -28,8 +28,8 @@ Eigen::VectorXd interleaved(const validate::event::FitEvent& e, const std::vecto
   return all;
 }
 
-/// Marks the samples next to a switching. A measurement delay of 1 ms affects only one of these; there a
-/// diagnosis cannot distinguish it from a shifted switching time.
+/// Marks the samples next to a switching, which are not compared. A measurement delay of 1 ms changes only
+/// one such sample, and a diagnosis cannot distinguish this change from a shifted switching time.
 std::vector<char> beside_switchings(const validate::record::Record& record,
                                     const std::vector<double>& switchings) {
   std::vector<char> beside;

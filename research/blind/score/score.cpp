@@ -183,7 +183,7 @@ Forecast ScoredCase::forecast() const {
            std::ranges::all_of(accepted_names, [&](const auto& a) { return share(a, said); });
   };
   std::vector<std::pair<double, char>> said;
-  double nothing = 0;  // includes wrong parameters, because these are no missing effect
+  double nothing = 0;  // probability of all explanations without a missing effect
   for (const auto& [explanation, probability] : verdict.probabilities)
     if (explanation.starts_with(validate::hypothesis::kNothingMissing))
       nothing += probability;
