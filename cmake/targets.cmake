@@ -45,8 +45,8 @@ endif()
 
 # Three kinds of sources: `hot` is simulation and fitting; `cold` is input, output and messages; `train` is LibTorch
 # code. Cold sources need at least -O2: a program contains each inline function once, compiled with the options of
-# either kind, and below -O2 GCC generates no fused multiply-adds. The last bit of a result would then depend on the
-# linker's choice.
+# either kind. Below -O2, GCC generates no fused multiply-adds, so the last bit of a result would depend on the linker's
+# choice.
 add_library(swingbank_hot INTERFACE)
 target_compile_options(swingbank_hot INTERFACE $<$<NOT:$<CONFIG:Debug>>:-O3>)
 target_link_libraries(swingbank_hot INTERFACE swingbank_options fmt::fmt Eigen3::Eigen OpenMP::OpenMP_CXX)

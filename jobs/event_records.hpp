@@ -93,9 +93,9 @@ struct Reading {
     if (!point.empty()) all.insert(all.end(), {"--point", point});
     return all;
   }
-  /// Applies the options to the model. Returns a function that prepares each record before its checks: it
-  /// sets the switching times, and subtracts the power of the other units at a shared measuring point. Throws
-  /// InputError if an option is invalid.
+  /// Applies the options to the model. Returns a function that prepares each record before its checks. The
+  /// function sets the switching times, and subtracts the power of the other units at a shared measuring
+  /// point. Throws InputError if an option is invalid.
   validate::check::Preparing apply(validate::plant::PlantModel& model,
                                    const std::vector<std::string>& records) const {
     Problems problems;

@@ -19,8 +19,8 @@ stop_signal=''
 
 launcher_patience=${SWINGBANK_LAUNCHER_PATIENCE:-30} # [s]
 
-# is_lost LAUNCHER: true if all child processes of the launcher have ended and it does not notice, or if one is stopped
-# and the others wait for it. Sets `lost` to the process to kill: the launcher, or the stopped process.
+# is_lost LAUNCHER: true if all child processes of the launcher have ended but it still runs. Also true if one of them
+# is stopped and the others wait for it. Sets `lost` to the process to kill: the launcher, or the stopped process.
 is_lost() {
   lost=$1
   local process state dead=0 all

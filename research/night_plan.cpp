@@ -1,9 +1,9 @@
 // swingbank night-plan EXPERIMENT...: computes the cost of a preset from measured rates, and scales the
 // preset to a number of hours.
 //
-// The numbers of events and of epochs each grow with the square root of the work, so that the number of
-// gradient samples is proportional to the work. Both have lower limits (a fold needs rows for its score). A
-// budget of minutes may therefore be exceeded; the plan then says so.
+// The numbers of events and of epochs each grow with the square root of the work. The number of gradient
+// samples is then proportional to the work. Events and epochs have lower limits (a fold needs rows for its
+// score). A budget of minutes may therefore be exceeded; the plan then says so.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -14,8 +14,8 @@
 
 namespace swingbank {
 
-/// Path of a key: the names of the tables and the key. "*" is any name, "[]" the elements of an array, and
-/// "=WORD" the keys of a table whose discriminator (Branch) has the value WORD.
+/// Path of a key: the names of the tables and the key. "*" is any name, and "[]" the elements of an array.
+/// "=WORD" are the keys of a table whose discriminator (Branch) has the value WORD.
 using KeyPath = std::vector<std::string>;
 
 /// Allowed values of a key.

@@ -25,8 +25,8 @@ struct Card {
 
 /// Replaces every occurrence of a file name in quotes. Returns false if there is none.
 bool replace_name(std::string& text, const std::string& from, const std::string& to);
-/// Returns the card of a config. Throws InputError if a named file cannot be read, or if the config writes a
-/// file name with escape sequences, because `replace_name` does not find such a name.
+/// Returns the card of a config. Throws InputError if a named file cannot be read. A file name with escape
+/// sequences is also an error, because `replace_name` does not find it.
 Card card_of(const DatasetConfig& config, const std::string& kernel,
              const std::map<std::string, std::string>& made_by);
 /// Writes card.json into the folder.

@@ -32,8 +32,8 @@ std::string reason() {
   return text;
 }
 
-/// Returns the errno value in a message of HDF5's driver ("errno = 28"), or the errno value that is
-/// equivalent to an MPI-IO error; 0 if there is none.
+/// Returns the errno value in a message of HDF5's driver ("errno = 28"), or the equivalent of an MPI-IO error
+/// in it; 0 if it has neither.
 int system_error(const std::string& why) {
   constexpr std::string_view kErrno = "errno = ";
   if (const auto at = why.find(kErrno); at != std::string::npos)

@@ -21,9 +21,9 @@ struct PhysicsWindow {
 };
 
 /// Computation of the signals. Channels in this order: P/V, Q/V, V, E, angle of E relative to the terminal,
-/// integral of P. A record with speed adds speed and its integral; with field current, field current and its
-/// integral; with speed and frequency, frequency and the integral of their difference. All are relative to
-/// their mean before the event. Samples are means over bins: one sample of the record until 1 s after the
+/// integral of P. If recorded, the speed and its integral follow, then the field current and its integral. If
+/// speed and frequency are recorded, frequency and the integral of their difference follow. All are relative
+/// to their mean before the event. Samples are means over bins: one sample of the record until 1 s after the
 /// event, 1/30 s until 5 s, then 1/15 s.
 class Physics {
  public:

@@ -1,9 +1,9 @@
 #pragma once
 // Transformation of series to a short row of uncorrelated numbers of equal variance. Each channel is divided
 // by the row's size, the root mean square of the first channel. The principal components of all channels are
-// whitened together and bounded by asinh. For rows with different noise levels, the numbers are also rotated
-// until their noise is uncorrelated, and multiplied by the signal's share of the variance at the row's noise
-// level. Fitted on training rows only.
+// whitened together and bounded by asinh. If rows have different noise levels, the numbers are also rotated
+// until their noise is uncorrelated. They are then multiplied by the signal's share of the variance at the
+// row's noise level. Fitted on training rows only.
 #include <Eigen/Dense>
 #include <span>
 #include <vector>
@@ -27,8 +27,9 @@ class Whitening {
                        std::size_t components);
 
   [[nodiscard]] const WhiteningSizes& sizes() const { return sizes_; }
-  /// Returns the length of a transformed row: whitened numbers, scaled steady values and logarithm of the
-  /// size, encoded noise level, and regression coefficients relative to their medians and widths.
+  /// Returns the length of a transformed row. It consists of the whitened numbers, the scaled steady values,
+  /// the logarithm of the size and the encoded noise level. Regression coefficients follow, relative to their
+  /// medians and widths.
   [[nodiscard]] std::size_t length() const {
     return sizes_.kept + sizes_.levels + 1 + sizes_.noisy + sizes_.regressed;
   }

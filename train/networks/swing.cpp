@@ -1,7 +1,7 @@
 // Layer that solves the swing equation in weak form: weighted linear least squares for H and D on the
-// integrals of train/data/swing. The learned quantities are the weight of each test function, the weight of
-// the rotor angle against the speed channel, and the bias that noise in the regressors causes. The solution
-// is differentiable, so these quantities are trained on the errors of H and D. The bias of a least-squares
+// integrals of train/data/swing. Learned quantities: the weight of each test function, the weight of the
+// rotor angle against the speed channel, and the bias that noise in the regressors causes. The solution is
+// differentiable, so these quantities are trained on the errors of H and D. The bias of a least-squares
 // estimate with noisy regressors is proportional to the noise variance (Fuller, Measurement Error Models,
 // 1987, section 1.2).
 #include <ATen/ATen.h>

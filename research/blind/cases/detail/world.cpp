@@ -203,8 +203,8 @@ void BlindWorld::draw_target(const BlindConditions& conditions, BlindDraw& draw)
 }
 
 /// Splits off a part of the plant as a second unit at the same bus, with its own values and controls. Cases
-/// with a hidden instrument error are not split: the instrument would measure the sum of both units, and no
-/// hypothesis about a single unit covers its error.
+/// with a hidden instrument error are not split. The instrument would measure the sum of both units, and no
+/// hypothesis about a single unit covers that error.
 void BlindWorld::split_target(const BlindConfig& config, BlindDraw& draw) {
   const double share = config.conditions.second_unit_share;
   if (!(share > 0 && draw.coin(share)) || std::ranges::any_of(hidden_, &BlindKind::of_instrument)) return;

@@ -83,8 +83,8 @@ struct RecordNoise {
 /// Adds noise to the record; without `channels`, also removes speed and Ifd.
 void add_noise(validate::record::Record& record, const RecordNoise& noise, bool channels, BlindDraw& draw);
 
-/// Size of a hidden effect: norm of the change of P and Q that it causes in all events, in units of the
-/// residual noise of a correct model. This noise consists of the noise of P and Q, and of the response of
+/// Size of a hidden effect: norm of the change of P and Q that the effect causes in all events. The unit is
+/// the residual noise of a correct model. This noise consists of the noise of P and Q, and of the response of
 /// plant and controls to the noise of V and theta.
 class BlindSize {
  public:
