@@ -19,7 +19,7 @@ namespace swingbank {
 
 class KeyTrace;
 
-/// Closed interval of the allowed values of a number, and what a key means.
+/// Allowed values of a key: closed interval of a number, or pattern of a text; with unit and description.
 struct Range {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   ///< ends of the interval [unit]
