@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the reports of the gallery by the commands of README.md, and their pictures.
+# Runs the commands of README.md, which write the reports of the gallery, and takes pictures of the reports.
 #   bash docs/gallery/make.sh FOLDER [--pictures]    reports, commands and outcome.txt go into FOLDER
 # --pictures also renews the PNG files beside this script (needs chromium-driver and python3-selenium).
 # SWINGBANK_BIN: folder of the commands; default: build/release/bin.
@@ -16,7 +16,7 @@ cd "$1"
 cp -rL "$source/configs" .
 chmod -R u+w configs
 
-# records FOLDER DYR-RECORD: the case with this record added, and four events of bus 2 with a PMU's noise
+# records FOLDER DYR-RECORD: adds this record to the case, and simulates four events at bus 2 with the noise of a PMU
 records() {
   local folder=$1 case=configs/networks/ieee14_genrou k=0 event
   mkdir -p "$folder"
@@ -29,7 +29,7 @@ records() {
       --out "$folder/event$k.csv" >>log 2>&1
   done
 }
-# submitted FOLDER DYR: the plant file that its owner submits
+# submitted FOLDER DYR: writes the plant file that the owner submits
 submitted() {
   swingbank plant --raw configs/networks/ieee14_genrou.raw --dyr "$2" --bus 2 --out "$1/model.toml" >>log 2>&1
 }

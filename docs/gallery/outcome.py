@@ -17,7 +17,7 @@ def named(case):
 
 
 def error(case, result, record, channel):
-    """RMS error of a channel before and after, in an event outside the fit."""
+    """Returns the RMS error of a channel before and after the change, in a held-out event."""
     before, after = [e for e in read(f"{case}/{result}")["errors"] if (e["record"], e["channel"]) == (record, channel)]
     return (f"RMS error of {channel} in the held-out event {before['rms']:.3g} -> {after['rms']:.3g} {after['unit']} "
             f"(noise {after['noise']:.3g} {after['unit']})")

@@ -1,6 +1,6 @@
-"""Writes pictures of the first screens of the gallery's reports in the current folder.
+"""Takes pictures of the first screens of the gallery's reports, which lie in the current folder.
 
-  pictures.py FOLDER    PNG files for README.md, and the three narrow ones of the top README
+  pictures.py FOLDER    writes the PNG files of this README.md and the three narrow ones of the top README.md into FOLDER
 """
 import base64
 import pathlib
@@ -13,7 +13,7 @@ from selenium.webdriver.chrome.service import Service
 WIDE, NARROW = 1000, 420  # [pixels]
 CURVES = "document.querySelector('.large').getBoundingClientRect().bottom"
 BARS = "document.querySelector('svg .before').closest('figure').getBoundingClientRect().bottom"
-PAGES = {  # folder, width, last part that is shown
+PAGES = {  # folder, width, bottom edge of the picture
     "exciter-compare": ("exciter/comparison", WIDE, CURVES),
     "exciter-diagnose": ("exciter/diagnosis", WIDE, CURVES),
     "exciter-add": ("exciter/added", WIDE, BARS),
