@@ -3,8 +3,8 @@
 
   python3 docs/architecture.py [--check]    --check changes nothing and exits with 1 if the drawing is out of date
 
-A module stands above all that it uses, one layer above the highest of them. An arrow that follows from others is left out.
-The layers are ordered by the barycentre method of Sugiyama, Tagawa and Toda, IEEE Trans. SMC 11 (1981) 109.
+Each module is one layer above the highest module that it uses. Arrows that follow from others are omitted.
+The modules of a layer are ordered by the barycentre method of Sugiyama, Tagawa and Toda, IEEE Trans. SMC 11 (1981) 109.
 """
 import functools
 import graphlib
@@ -18,7 +18,7 @@ WIDTH, BOX, STEP, GAP, MARGIN = 900, 26, 66, 14, 16  # px; a layer is STEP high
 
 
 def read_modules():
-    """Module -> the modules it uses, those that only its sources use included."""
+    """Returns for each module the modules that its headers or sources use."""
     modules = {}
     for folder in ("base", "sim", "mpi", "train", "validate", "research"):
         text = re.sub(r"#.*", "", (ROOT / folder / "CMakeLists.txt").read_text())
@@ -43,7 +43,7 @@ def read_modules():
 
 
 def layers_of(modules):
-    """The layers from the bottom, with a mark where an arrow passes one; the arrows as lists of such nodes."""
+    """Returns the layers from the bottom, with a node where an arrow crosses a layer, and each arrow as a list of nodes."""
     @functools.cache
     def rank(module):
         return 1 + max(map(rank, modules[module]), default=-1)
@@ -77,7 +77,7 @@ def crossings(layers, below):
 
 
 def order(layers, arrows):
-    """Few crossings: each node near the mean of its neighbours, downwards and upwards in turn."""
+    """Orders each layer for few crossings: sorts nodes by the mean of their neighbours, upwards and downwards in turn."""
     below = {node: [] for layer in layers for node in layer}
     above = {node: [] for node in below}
     for arrow in arrows:
@@ -105,7 +105,7 @@ def width(node):
 
 
 def place(layer, wanted):
-    """The positions nearest to those wanted, in least squares, at which nothing overlaps (pooled neighbours)."""
+    """Returns positions without overlap, nearest to the wanted ones in least squares (pooling of adjacent nodes)."""
     offsets, offset = [], 0.0
     for i, node in enumerate(layer):
         offset += (width(layer[i - 1]) + width(node)) / 2 + GAP if i else 0.0

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Writes the coverage table of docs/models.md: how many dynamic records of PSS/E cases the effects support, by model.
 #   bash docs/coverage_table.sh FILE.dyr...
-# The table lies between `<!-- coverage -->` and `<!-- end of coverage -->`. Its source is
+# The script replaces the lines between `<!-- coverage -->` and `<!-- end of coverage -->`. It runs
 # `swingbank effects --coverage --json`; the command must be in the PATH, or in build/release/bin or build/dev/bin.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -2,10 +2,10 @@
 # Writes the tables of dependencies and files into each module's README.md.
 #   bash docs/readme_tables.sh [--check]
 #     --check  changes nothing; exits with 1 and names each README that is out of date
-# Between `<!-- uses -->` and `<!-- end of uses -->`: the modules that the module names in its CMakeLists.txt.
+# Between `<!-- uses -->` and `<!-- end of uses -->`: the modules named in its swingbank_module() line.
 # Between `<!-- files -->` and `<!-- end of files -->`: one row per file, for each header and for each source without a
 # header of its name. A row contains the first sentence of the file's head comment, or an effect's name and title. The
-# order of rows is kept, because it is the order of the data flow; a new file comes last, and a deleted one is removed.
+# order of the rows does not change, because it is that of the data flow. New files are appended, deleted ones removed.
 # shellcheck disable=SC2016 # backticks are Markdown here
 set -euo pipefail
 shopt -s nullglob
@@ -26,7 +26,7 @@ awk 'FNR == 1 { text = "" }
   text ~ /\)/ { gsub(/swingbank_module\(|\)/, "", text); $0 = text; $1 = $1; print; text = "" }' \
   base/CMakeLists.txt {sim,mpi,train,validate,research}/CMakeLists.txt >"$work/modules"
 
-# uses MODULE: the modules it names, as links.
+# uses MODULE: prints the modules that it names, as links.
 uses() {
   awk -v module="$1" '
     function link(other) { return "[" other "](" up other "/README.md)" }
@@ -42,7 +42,7 @@ uses() {
     }' "$work/modules"
 }
 
-# files MODULE: without extension, those of detail/ last
+# files MODULE: prints its files without extension, those of detail/ last.
 files() {
   local path
   for path in "$1"/*.hpp "$1"/*.cpp "$1"/detail/*.hpp "$1"/detail/*.cpp; do
@@ -52,8 +52,8 @@ files() {
   done
 }
 
-# says: appends to each input path a tab, and name and title of an effect, else the first sentence of the head comment.
-# A full stop ends it unless it stands in parentheses or behind an initial.
+# says: appends to each input path a tab, and the name and title of an effect or the first sentence of the head comment.
+# A full stop in parentheses or after an initial does not end the sentence.
 says() {
   awk '
     function first_sentence(s,   i, c, depth) {
@@ -67,7 +67,7 @@ says() {
       sub(/[.:]$/, "", s)
       return s
     }
-    function as_cell(s,   i, c, cell, code) { # what Markdown would read as markup, outside `code`
+    function as_cell(s,   i, c, cell, code) { # escapes Markdown markup outside `code`
       for (i = 1; i <= length(s); ++i) {
         c = substr(s, i, 1)
         if (c == "`") code = !code
@@ -75,7 +75,7 @@ says() {
       }
       return cell
     }
-    function quoted(declared, word,   s) { # the text behind `word =`
+    function quoted(declared, word,   s) { # the string after `word =`
       if (!match(declared, word " = \"[^\"]*\"")) return ""
       s = substr(declared, RSTART, RLENGTH)
       gsub(/^[^"]*"|"$/, "", s)
@@ -105,7 +105,7 @@ says() {
     { print $0 "\t" as_cell(said($0, $0 ~ /^sim\/effects\// && $0 !~ /\/detail\//)) }'
 }
 
-# table MODULE
+# table MODULE: prints the table of its files.
 table() {
   local name file said
   files "$1" >"$work/there"
@@ -127,7 +127,7 @@ table() {
     done
 }
 
-# written MODULE: its README with both parts as they should be
+# written MODULE: prints its README with both parts up to date.
 written() {
   uses "$1" >"$work/uses"
   table "$1" >"$work/files"

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Source folder of the documentation site: the pages that the README's links lead to, as Python-Markdown reads them.
+"""Writes the source folder of the documentation site: all pages reached by links from the README, in Python-Markdown.
 
     python3 docs/site/pages.py FOLDER    writes FOLDER/pages and FOLDER/mkdocs.yml
 
-Every path is that of the repository, so relative links hold. A linked source file becomes a page with its text, a
-notebook a page with its cells. Broken links are reported all at once. Python-Markdown wants a blank line before a list
-or table and indents nested blocks by four columns; GitHub does not, and the pages are written for GitHub.
+Paths are the same as in the repository, so relative links remain valid. A linked source file becomes a page with its
+text, a notebook a page with its cells. All broken links are reported at once. The pages are written for GitHub;
+Python-Markdown also needs a blank line before a list or table, and four columns of indentation for nested blocks.
 """
 import json
 import os
@@ -40,12 +40,12 @@ def page_of_source(path):
 
 
 def is_page(path):
-    """Returns whether the site shows the file as a page of its own text."""
+    """Returns whether the file is a Markdown page."""
     return path.endswith(".md")
 
 
 def is_picture(path):
-    """Returns whether the file is copied unchanged."""
+    """Returns whether the file is a picture, which is copied unchanged."""
     return path.endswith((".png", ".svg"))
 
 
@@ -116,7 +116,7 @@ def for_python_markdown(text):
     for line, prose in outside_fences(text.splitlines()):
         if prose and (not line.strip() or re.fullmatch(r"\s*<!--.*-->\s*", line)):
             lines.append("")
-            before, fence, second = "", False, bool(levels)  # what follows is a second paragraph of its item
+            before, fence, second = "", False, bool(levels)  # the next line is a further paragraph of the list item
             continue
         indent = len(line) - len(line.lstrip(" "))
         opens = not prose and not fence
@@ -160,7 +160,7 @@ def navigation(site):
             page = os.path.normpath(os.path.join("docs", link))
             kinds.setdefault(kind, []).append({title if index == 0 else title_of(site.texts[page]): page})
             seen.add(page)
-    for pages in kinds.values():  # decisions and logs lie beside their list
+    for pages in kinds.values():  # decisions and logs are listed after their README
         for entry in pages:
             (title, page), = entry.items()
             others = sorted(p for p in site.texts if os.path.dirname(p) == os.path.dirname(page) and p not in seen)

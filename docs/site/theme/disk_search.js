@@ -1,5 +1,5 @@
-// Search of a site opened from a disk, where browsers refuse workers and requests: the index is a script, loaded when
-// the search field gets the focus, and the worker is a hidden frame.
+// Search in a site that is opened from a disk, where browsers refuse workers and requests. The index is a script, loaded
+// when the search field gets the focus. A hidden frame replaces the worker.
 var __search = {
   index: new Promise((resolve) => {
     const file = document.currentScript.src.replace("disk_search.js", "search/search_index.js");
