@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Writes the networks of this folder from the JSON files that stand beside the ANDES reference records.
+"""Writes the networks of this folder from the JSON files that accompany the ANDES reference records.
 
 usage: from_andes.py FOLDER_WITH_JSON [OUTPUT_FOLDER]
 
-Decimals are exact: what read_raw gives back equals the JSON's doubles to the last bit.
+Decimals are exact: the doubles that read_raw returns equal those of the JSON to the last bit.
 """
 import json
 import sys
@@ -17,7 +17,7 @@ DATASET_MVA = {
     "ieee39": {30: 1000, 31: 700, 32: 800, 33: 800, 34: 600, 35: 800, 36: 700, 37: 700, 38: 1000, 39: 10000},
     "ieee14": {1: 615, 2: 60, 3: 60, 6: 25, 8: 25},
 }
-# .dyr columns by the names of the JSON.
+# .dyr columns, with the names that the JSON gives them.
 COLUMNS = {
     "GENCLS": ["H", "D"],
     "GENROU": ["Td10", "Td20", "Tq10", "Tq20", "H", "D", "xd", "xq", "xd1", "xq1", "xd2", "xl", "S10", "S12"],
@@ -29,7 +29,7 @@ EMPTY_SECTIONS = ["area", "two-terminal dc line", "VSC dc line", "impedance corr
 
 
 def exact(value, factor=1):
-    """The shortest decimal of value * factor that gives the same double back when divided by factor."""
+    """Returns the shortest decimal of value * factor that, divided by factor, gives the same double."""
     scaled = Decimal(repr(value)) * factor
     for digits in range(1, 30):
         text = Decimal(f"{scaled:.{digits - 1}e}")
@@ -41,7 +41,7 @@ def exact(value, factor=1):
 
 
 def raw(case, model, bases, titles):
-    """Text of the .raw file, version 33."""
+    """Returns the text of the .raw file, version 33."""
     net, rows = case["network"], []
     mva = net["base_mva"]
 
