@@ -1,5 +1,5 @@
 #pragma once
-// CUBEDAMP: damping by the cube of the speed, an effect that Swingbank does not have.
+// CUBEDAMP: damping proportional to the cube of the speed deviation, an effect that Swingbank lacks.
 #include "sim/core/effect.hpp"
 
 namespace example {

@@ -1,4 +1,4 @@
-// Fits two parameters of the machine, H and X'd, to several records at once, and prints them with their 95 %
+// Example: fit of two machine parameters, H and X'd, to several records at once. Prints them with their 95 %
 // intervals.
 #include <cstdio>
 #include <exception>

@@ -1,4 +1,5 @@
-// Adds an effect that Swingbank does not have to a plant, and plays a record into both.
+// Example: an effect that Swingbank lacks, added to a plant. Plays a record into the plant without and with
+// the effect, and prints the errors of P.
 #include <cstdio>
 #include <exception>
 

@@ -1,5 +1,5 @@
-// Plays a record into a plant model: V and its angle drive the model, and P and Q are compared with the
-// measured ones.
+// Example: playback of a record. V and its angle are the inputs of the model, and P and Q are compared with
+// the measured ones.
 #include <cstdio>
 #include <exception>
 

@@ -1,5 +1,5 @@
-// Reads a dataset of `swingbank generate`: for each shard the mean of each parameter, and the largest speed
-// deviation.
+// Example: reader of a dataset of `swingbank generate`. Prints the mean of each parameter and the largest
+// speed deviation of each shard.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,7 +13,8 @@ int main(int argc, char** argv) try {
   const store::Dataset dataset = store::open_dataset(argv[1]);
   const auto speed = std::ranges::find(dataset.channel_names, "speed") - dataset.channel_names.begin();
   for (const store::ShardInfo& info : dataset.shards) {
-    const store::ShardData shard = store::read_checked(info);  // compares it with the header and the journal
+    const store::ShardData shard =
+        store::read_checked(info);  // verifies the shard against the header and the journal
     std::printf("%s: %zu records\n", info.path.filename().c_str(), shard.rows);
     for (std::size_t p = 0; p < shard.parameter_count && shard.rows > 0; ++p) {
       double sum = 0;

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Loads a trained network of kind cnn into PyTorch and estimates the parameters of a record:
-python3 load_network.py run.network record.npy, an array of channels x samples from t = 0 [units of the dataset]."""
+python3 load_network.py run.network record.npy. The record is an array of channels x samples from t = 0, in the units
+of the dataset."""
 import json
 import sys
 
@@ -10,7 +11,7 @@ from torch.nn import functional as nn
 
 
 def read(path):
-    """Header and arrays of a network file (train/run/README.md)."""
+    """Returns header and arrays of a network file (train/run/README.md)."""
     data, at = open(path, "rb").read(), len(b"swingbank-network-1\n")
 
     def take(count, kind):
@@ -24,13 +25,13 @@ def read(path):
 
 
 def same(x, weight, bias):
-    """Convolution whose output is as long as its input; weight: taps x inputs x outputs."""
+    """Returns a convolution with as many samples as x; weight: taps x inputs x outputs."""
     taps = weight.shape[0]
     return nn.relu(nn.conv1d(nn.pad(x, ((taps - 1) // 2, taps // 2)), weight.permute(2, 1, 0), bias))
 
 
 def estimate(path, record):
-    """Values of the parameters by name."""
+    """Returns the estimated parameters by name."""
     h, (mean, deviation, w1, b1, w2, b2, *dense) = read(path)
     assert h["kind"] == "cnn" and h["features"]["pca_components"] == 0 and h["input"]["form"] == "deviation", h["input"]
     cut = h["input"]

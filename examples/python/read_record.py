@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints range and sampling of each column of a record in CSV: python3 read_record.py record.csv"""
+"""Prints the sampling rate of a record in CSV and the range of each column: python3 read_record.py record.csv"""
 import csv
 import sys
 
