@@ -341,7 +341,8 @@ std::pair<double, double> Config::interval(const std::string& key, const Range& 
   if (trace_) return trace_->interval(key, range);
   const auto v = require<std::vector<double>>(key, range);
   if (v.size() == 2 && v[0] <= v[1]) return {v[0], v[1]};
-  if (is_array(key) && v.size() != 2 && !v.empty())
+  const bool empty = is_array(key) && tree_->at(key)->as_array()->empty();
+  if (is_array(key) && v.size() != 2 && (empty || !v.empty()))  // require() reports elements of other types
     problem(key, key + " has " + std::to_string(v.size()) + " numbers", "an interval has two",
             "write [low, high]");
   if (v.size() == 2)

@@ -6,8 +6,10 @@ import tomllib
 with open(sys.argv[1], "rb") as file:
     plant = tomllib.load(file)
 print(plant["plant"]["name"], "on a base of", plant["plant"]["base_mva"], "MVA")
-blocks = [plant["machine"]] + [plant[key] for key in ("transformer",) if key in plant] + plant.get("control", [])
-for block in blocks:
-    for name, value in block.items():
-        if name != "effect":
-            print(f"{block['effect']}.{name} = {value}")
+# A component is a table with an effect: [machine] or [converter], [exciter], [governor], [[limiter]], [[measurement]].
+for section in plant.values():
+    for block in section if isinstance(section, list) else [section]:
+        if isinstance(block, dict) and "effect" in block:
+            for name, value in block.items():
+                if name != "effect":
+                    print(f"{block['effect']}.{name} = {value}")

@@ -63,6 +63,12 @@ TEST(StrictConfig, ReadsDotsOutsideOfKeys) {
   EXPECT_EQ(c.require<std::vector<double>>(dotted(32) + ".d").size(), 4U);
 }
 
+TEST(StrictConfig, RefusesAnEmptyInterval) {
+  Config c("box = []\n", "c.toml");
+  c.interval("box");
+  EXPECT_THAT(sentence_of(c), HasSubstr("box has 0 numbers"));
+}
+
 TEST(StrictConfig, ReportsAllProblemsWithTheirLines) {
   Config c("a = 'one'\nb = 7\nzzz = 1\n[t]\nunheard = 2\nbox = [3, 1]\nmode = 'blue'\n", "c.toml");
   c.require<std::int64_t>("a");
