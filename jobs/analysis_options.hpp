@@ -51,13 +51,13 @@ struct AnalysisOptions {
     for (const Option& option : reading.add_to(line)) keep(option);
     keep(line.add_flag_off("--power-only", measured_states,
                            "ignore recorded speed, Efd and Ifd: compare P and Q only"));
-    keep(line.add("--law", user_model_files,
+    keep(line.add("--user-model", user_model_files,
                   "file (.toml) of a user-defined model that the plant may use and that may be added to it; "
                   "may be repeated")
              .one_value_a_mention());
     line.group("Events");
     keep(reading.add_switch(line));
-    keep(line.add("--jump-threshold", step_threshold, "smallest voltage step detected as a switching [pu]")
+    keep(line.add("--step-threshold", step_threshold, "smallest voltage step detected as a switching [pu]")
              .shows_default()
              .positive());
     keep(line.add("--pre-event", pre_event,
@@ -76,7 +76,7 @@ struct AnalysisOptions {
   /// Declares the options of commands that fit parameters.
   std::vector<Option> declare_fit(CommandLine& line) {
     line.group("Expert");
-    return {line.add("--spread", prior_sd, "prior standard deviation of the model's parameters, relative")
+    return {line.add("--prior-sd", prior_sd, "prior standard deviation of the model's parameters, relative")
                 .shows_default()
                 .between(0.001, 2.0)};
   }
@@ -94,7 +94,7 @@ struct AnalysisOptions {
     words.insert(words.end(), records.begin(), records.end());
     for (const auto& word : reading.words()) words.push_back(word);
     for (const auto& word : reading.switches) words.insert(words.end(), {"--switch", word});
-    for (const auto& file : user_model_files) words.insert(words.end(), {"--law", file});
+    for (const auto& file : user_model_files) words.insert(words.end(), {"--user-model", file});
     if (reading.component != "plant") words.insert(words.end(), {"--component", reading.component});
     if (!measured_states) words.emplace_back("--power-only");
     if (!judging.accept.empty()) words.insert(words.end(), {"--accept", judging.accept});
@@ -119,7 +119,7 @@ struct AnalysisOptions {
   void limit_threads() const {
     if (threads > 0) omp_set_num_threads(threads);
   }
-  /// Returns the plant model, with the user-defined models of --law in its library. With `to_fit`, a
+  /// Returns the plant model, with the user-defined models of --user-model in its library. With `to_fit`, a
   /// calibrated model is reset to its values before the calibration. Throws InputError if a file is invalid.
   validate::plant::PlantModel load_model(bool to_fit) {
     using namespace validate;
@@ -135,7 +135,7 @@ struct AnalysisOptions {
       fmt::print(stderr, "note: started from the values before that calibration\n");
     return plant::as_submitted(std::move(loaded));
   }
-  /// Adds to the model the names of the --law files that define its user-defined models.
+  /// Adds to the model the names of the --user-model files that define its user-defined models.
   void keep_user_models(validate::plant::PlantModel& of) const {
     for (const auto& [file, effect] : user_models)
       for (const auto& block : of.plant.controls)

@@ -150,7 +150,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
       "plant file of another model, whose response is the reference: to the voltage of the records, or to a "
       "generated input");
   a.reading.add_columns(line);
-  line.add("--law", a.user_model_files,
+  line.add("--user-model", a.user_model_files,
            "file (.toml) of a user-defined model that a plant may use; may be repeated")
       .one_value_a_mention();
   line.group("Output");

@@ -179,7 +179,7 @@ std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
   return calibrate::read_estimate(file);
 }
 
-/// Runs the sparse parameter selection (--fewest) and writes the model with the changed parameters.
+/// Runs the sparse parameter selection (--sparse) and writes the model with the changed parameters.
 int run_sparse(Arguments& a, const plant::PlantModel& model, const check::RecordSet& set) {
   const calibrate::WrongParameters w = calibrate::wrong_parameters(model, set.records, a.options);
   a.fitted = w.found.fit;
@@ -205,7 +205,7 @@ int run(Arguments& a, plant::PlantModel& model) {
     throw InputError({"a network's start", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
   if (a.sparse && (a.method != "fit" || !(a.network.empty() && a.start.empty())))
-    throw InputError({"a method or a start of its own", "--fewest", "it is a method of its own",
+    throw InputError({"a method or a start of its own", "--sparse", "it is a method of its own",
                       "leave --method, --network and --start out"});
   if (a.method == "curve-fit") return run_baseline(a, model, set, truth);
   if (a.sparse) return run_sparse(a, model, set);
@@ -272,7 +272,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
            "values, as a baseline; both: comparison of the two")
       .shows_default()
       .one_of({"fit", "curve-fit", "both"});
-  line.add_flag("--fewest", a.sparse,
+  line.add_flag("--sparse", a.sparse,
                 "select the smallest set of parameters that must change for the model to explain the "
                 "records; all others keep their values; writes the model with these changes");
   line.add("--fix", o.fixed, "parameter that keeps its value (GENROU.Xl); may be repeated");

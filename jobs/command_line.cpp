@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -24,6 +25,13 @@ CLI::Validator number_that(bool (*accepts)(double), const std::string& name, con
           },
           name};
 }
+
+/// Options that had another name in version 0.1, with the present name.
+const std::map<std::string, std::string> kFormerNames = {{"--drive", "--playback"},
+                                                         {"--fewest", "--sparse"},
+                                                         {"--jump-threshold", "--step-threshold"},
+                                                         {"--law", "--user-model"},
+                                                         {"--spread", "--prior-sd"}};
 
 int exit_code(const CLI::App& app, const CLI::ParseError& why) { return app.exit(why) == 0 ? 0 : 1; }
 
@@ -119,7 +127,11 @@ struct CommandLine::Parser {
         continue;
       }
       const std::string name = word.substr(0, word.find('='));
-      const std::string nearest = nearest_word(name, names());
+      const auto former = kFormerNames.find(name);
+      const std::string nearest =
+          former != kFormerNames.end() && std::ranges::count(names(), former->second) > 0
+              ? former->second
+              : nearest_word(name, names());
       sentences.push_back(fmt::format(
           "unknown option at '{}' ({} has none of that name): {}", name, app.get_name(),
           nearest.empty() ? fmt::format("see {} --help", app.get_name()) : "did you mean " + nearest + "?"));

@@ -138,7 +138,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
                "several terminals (validate/record/README.md)");
   line.group("Expert");
   line.add(
-          "--drive", a.input,
+          "--playback", a.input,
           "signals of the playback: voltage (V and angle are played in, P and Q compared) or pq (the reverse)")
       .one_of({"voltage", "pq"})
       .shows_default()

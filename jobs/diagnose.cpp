@@ -85,8 +85,8 @@ int run(Command& c) {
     fmt::print("{}{}\nreport: {}\n", compare::fitness_text(played),
                compare::complete_text(adequate, diagnose::diagnosis_text(d)), page.string());
     if (!user_model_file.empty())
-      fmt::print("user-defined model: {0} (swingbank add {1} --law {0} adds it)\n", user_model_file.string(),
-                 user_model_file.stem().string());
+      fmt::print("user-defined model: {0} (swingbank add {1} --user-model {0} adds it)\n",
+                 user_model_file.string(), user_model_file.stem().string());
   }
   if (const std::string next = diagnose::next_command(d, provenance); !c.of.json && !next.empty())
     fmt::print("next: {}\n", next);

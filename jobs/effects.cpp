@@ -113,7 +113,7 @@ void describe(const Effect& e) {
       rows.push_back({std::string(p.name), std::string(p.symbol), std::string(p.unit),
                       number(p.default_value), number(p.low), number(p.high), number(p.null_value),
                       sources.marks(p), std::string(p.meaning)});
-    fmt::print("\nparameters (neutral: null value, without influence; unit code: a choice)\n");
+    fmt::print("\nparameters (null: null value, without influence; unit code: a choice)\n");
     print_table(rows);
     sources.print();
   }
@@ -249,7 +249,7 @@ int run(CommandLine& line, int argc, char** argv) {
   Shape shape;
   const jobs::Option effects = line.add("NAME", names, "effects, e.g. GENROU SEXS");
   const jobs::Option user_model =
-      line.add("--law", user_models, "file (.toml) of a user-defined model; may be repeated")
+      line.add("--user-model", user_models, "file (.toml) of a user-defined model; may be repeated")
           .one_value_a_mention();
   line.add("--coverage", dyr_files,
            "PSS/E .dyr files: how many of their records the effects cover, model by model")

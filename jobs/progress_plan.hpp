@@ -62,7 +62,7 @@ inline const ProgressPlan kAddPlan = {
     {Phase::effect_left_out, 0.42, 0.5}, {Phase::effect_added, 0.5, 0.52},
     {Phase::sensitivities, 0.52, 0.8},   {Phase::playing, 0.8, 1},
 };
-/// Phases of `calibrate --fewest`, measured with twelve events of a unit with four controls behind its
+/// Phases of `calibrate --sparse`, measured with twelve events of a unit with four controls behind its
 /// transformer (480 s).
 inline const ProgressPlan kSparsePlan = {
     {Phase::every_parameter, 0, 0.12},

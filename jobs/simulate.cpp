@@ -205,7 +205,7 @@ void describe_run(mpi::store::h5::File& h, const Options& o, const grid::Grid& g
   h.attribute("vref_steps", joined(o.event.vref_steps));
   h.attribute("pref_steps", joined(o.event.pref_steps));
   h.attribute("loads", grid::describe_loads(grid));
-  h.attribute("laws", joined(o.user_models));
+  h.attribute("user_models", joined(o.user_models));
   h.attribute("attached", joined(o.attached));
   h.attribute("measured", joined(o.measured));
   h.attribute("measure_seed", std::to_string(o.measure_seed));
@@ -381,7 +381,7 @@ int run(CommandLine& line, int argc, char** argv) {
       .required();
   line.add("--frequency-hz", o.frequency_hz, "nominal frequency [Hz] of a network file without one");
   line.add("--raw-version", o.raw_version, "version of a .raw file without a version number, 23 to 35");
-  line.add("--law", o.user_models,
+  line.add("--user-model", o.user_models,
            "file (.toml) of a user-defined model that --attach may use; may be repeated");
   line.add("--convention", o.convention,
            "psse: governors set power; andes: torque; both neglect the speed term (omega = 1 pu) in the "

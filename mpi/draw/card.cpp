@@ -21,7 +21,7 @@ std::vector<std::pair<std::string, fs::path>> named_files(const DatasetConfig& c
   Config c(config.file);
   std::vector<std::pair<std::string, fs::path>> files = {{c.require<std::string>("raw"), config.raw},
                                                          {c.require<std::string>("dyr"), config.dyr}};
-  const auto user_models = c.optional<std::vector<std::string>>("laws", {});
+  const auto user_models = c.optional<std::vector<std::string>>("user_models", {});
   for (std::size_t i = 0; i < user_models.size() && i < config.user_models.size(); ++i)
     files.emplace_back(user_models[i], config.user_models[i]);
   return files;

@@ -88,13 +88,13 @@ std::vector<std::string> names_of(const sim::library::EffectLibrary& library,
 /// Reads [vary.effects.NAME]: parameters of effects other than the machine.
 void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, std::vector<Box>& box) {
   std::vector<std::pair<const sim::Effect*, std::string>> tables;
-  for (const auto& name : c.keys("vary.effects", names_of(library, is_varied), "laws")) {
+  for (const auto& name : c.keys("vary.effects", names_of(library, is_varied), "user_models")) {
     const std::string table = "vary.effects." + name;
     const sim::Effect* effect = library.find(name);
     const auto known = [&](const auto& t) { return t.first == effect; };
     std::string why;
     if (effect == nullptr)
-      why = "there is no such effect; user-defined models are listed under `laws`";
+      why = "there is no such effect; user-defined models are listed under `user_models`";
     else if (effect->slot == sim::Slot::machine)
       why = "it is a machine, whose parameters are given in [vary.box]";
     else if (!is_varied(*effect))
@@ -116,12 +116,13 @@ void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, st
 /// Reads `user_models` and `attach`. User-defined models come first, because they may be attached and varied.
 void read_effects(Config& c, DatasetConfig& d) {
   for (const auto& text : c.optional<std::vector<std::string>>(
-           "laws", {}, {.meaning = "files of user-defined models, relative to the folder of this file"})) {
+           "user_models", {},
+           {.meaning = "files of user-defined models, relative to the folder of this file"})) {
     d.user_models.push_back((c.name().parent_path() / text).lexically_normal());
     try {
       sim::user_models::load_user_model(d.user_models.back(), d.library);
     } catch (const InputError& e) {
-      for (const auto& p : e.problems()) c.problem("laws", p.what, p.where + ": " + p.why, p.remedy);
+      for (const auto& p : e.problems()) c.problem("user_models", p.what, p.where + ": " + p.why, p.remedy);
     }
   }
   Problems problems;

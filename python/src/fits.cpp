@@ -216,11 +216,11 @@ void bind_fits(py::module_& module, PlantClass& of) {
         },
         py::arg("records"), py::kw_only(), py::arg("hold_out") = std::vector<std::string>{},
         py::arg("fix") = std::vector<std::string>{}, py::arg("prior_sd") = prior,
-        py::arg("power_only") = false, py::arg("fewest") = false, py::arg("progress") = py::none(),
+        py::arg("power_only") = false, py::arg("sparse") = false, py::arg("progress") = py::none(),
         "Fits the plant's parameters to records (or their paths), as `swingbank calibrate` does.\n\n"
         "`hold_out`: names of records excluded from the fit; `fix`: parameters that keep their values;\n"
         "`prior_sd`: prior standard deviation of the parameters, relative; `power_only`: the recorded\n"
-        "speed, Efd and Ifd are not compared; `fewest`: selects the smallest set of parameters that must\n"
+        "speed, Efd and Ifd are not compared; `sparse`: selects the smallest set of parameters that must\n"
         "change, and returns a ParameterSelection in place of a Calibration; `progress`: called as\n"
         "progress(phase, item, done, total).\n"
         "Ctrl-C, or an exception of `progress`, ends the fit.")

@@ -66,11 +66,11 @@ class Plant:
                       power_only: bool = ...) -> Sensitivities: ...
     @overload
     def calibrate(self, records: Records, *, hold_out: Sequence[str] = ..., fix: Sequence[str] = ...,
-                  prior_sd: float = ..., power_only: bool = ..., fewest: Literal[False] = ...,
+                  prior_sd: float = ..., power_only: bool = ..., sparse: Literal[False] = ...,
                   progress: Optional[Progress] = ...) -> Calibration: ...
     @overload
     def calibrate(self, records: Records, *, hold_out: Sequence[str] = ..., fix: Sequence[str] = ...,
-                  prior_sd: float = ..., power_only: bool = ..., fewest: Literal[True],
+                  prior_sd: float = ..., power_only: bool = ..., sparse: Literal[True],
                   progress: Optional[Progress] = ...) -> ParameterSelection: ...
     def add(self, effect: str | Sequence[str], records: Records, *, hold_out: Sequence[str] = ..., prior_sd: float = ...,
             power_only: bool = ..., progress: Optional[Progress] = ...) -> Addition: ...

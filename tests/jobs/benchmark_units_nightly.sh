@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Two typical units, a steam unit (GENROU, ESST4B, PSS2B, IEEEG1) and a gas unit (GENROU, REXS, PSS2A, GGOV1), each
 # behind its transformer in twelve events at 30/s. The right model leaves only noise. Of five wrong values `calibrate
-# --fewest` names all, close to the truth, and at most two more. Of gains that act as a product either factor may be
+# --sparse` names all, close to the truth, and at most two more. Of gains that act as a product either factor may be
 # named.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
@@ -49,7 +49,7 @@ print(f"the right model: {d['bins_exceeding']} of {d['bins']} bins exceed what n
 sys.exit(d["bins_exceeding"] > 2)
 END
   SECONDS=0 code=0
-  "$swingbank" calibrate --fewest --model "$work/owner.toml" --records "$work"/event*.csv --out "$work/fewest" >"$work/said" \
+  "$swingbank" calibrate --sparse --model "$work/owner.toml" --records "$work"/event*.csv --out "$work/fewest" >"$work/said" \
     2>"$work/errors" || code=$?
   ((code == 0 || code == 4)) || fail "$unit: exit code $code: $(tail -3 "$work/said" "$work/errors")"
   python3 - "$work/fewest/calibrate.json" "${@:5}" <<'END' || fail "$unit: not the values that are wrong"

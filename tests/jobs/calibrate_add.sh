@@ -123,12 +123,12 @@ refuses "the same record twice" "two records named" calibrate --records "$one" "
 refuses "truth of no known form" "blind-test" calibrate --records "$one" --truth "$work/added/add.json"
 misused "no records" "records" calibrate
 misused "method" "method" calibrate --records "$one" --method guess
-misused "spread" "spread" calibrate --records "$one" --spread -1
+misused "prior" "prior-sd" calibrate --records "$one" --prior-sd -1
 refuses "unknown effect" "SEXS" add NONESUCH --records "$one"
 refuses "an effect of one event" "belongs to one event" add VREFSTEP --records "$one"
 refuses "slot taken" "no free place" add GENCLS --records "$one"
 refuses "no effect named" "until-adequate" add --records "$one"
 refuses "named and looked for" "until-adequate" add SEXS --until-adequate --records "$one"
 refuses "one event, held out" "every event is held out" add SEXS --records "$one" --hold-out avr_ev1
-refuses "no such law" "none.toml" add SEXS --records "$one" --law "$work/none.toml"
+refuses "no such law" "none.toml" add SEXS --records "$one" --user-model "$work/none.toml"
 leaves_nothing "$out"

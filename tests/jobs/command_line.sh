@@ -18,7 +18,7 @@ for command in compare calibrate diagnose add; do
   grep -A1 '^Example:' "$work/help" | grep -q "^  swingbank $command " || fail "$command --help has no example"
 done
 for command in calibrate diagnose add; do
-  holds -q -- '--spread' < <("$swingbank" "$command" --help) || fail "$command --help lacks --spread"
+  holds -q -- '--prior-sd' < <("$swingbank" "$command" --help) || fail "$command --help lacks --prior-sd"
 done
 "$swingbank" simulate --help >"$work/help"
 for group in Input 'Power flow' Models Events Measurements Output Expert; do
@@ -33,12 +33,13 @@ grep -q "unknown option at '--dyr'" "$work/words" || fail "export --dyr: $(cat "
 
 # every unknown word in the given order, with the most similar option
 status=0
-"$swingbank" add SEXS --model a.toml --records r.csv --thread 1 --jump-treshold=0.1 --xyzzy 3 4 2>"$work/words" >&2 || status=$?
+"$swingbank" add SEXS --model a.toml --records r.csv --thread 1 --step-treshold=0.1 --xyzzy 3 4 --law l.toml 2>"$work/words" >&2 || status=$?
 ((status == 1)) || fail "exit code $status, expected 1"
 cat >"$work/expected" <<'TEXT'
 unknown option at '--thread' (swingbank add has none of that name): did you mean --threads?
-unknown option at '--jump-treshold' (swingbank add has none of that name): did you mean --jump-threshold?
+unknown option at '--step-treshold' (swingbank add has none of that name): did you mean --step-threshold?
 unknown option at '--xyzzy' (swingbank add has none of that name): see swingbank add --help
+unknown option at '--law' (swingbank add has none of that name): did you mean --user-model?
 TEXT
 diff "$work/expected" "$work/words" || fail "unknown options are reported otherwise"
 "$swingbank" plant --raw a.raw extra 2>"$work/words" >&2 && fail "an unexpected argument is accepted"

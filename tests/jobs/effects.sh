@@ -7,8 +7,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 "$swingbank" effects SEXS genrou >"$work/two.txt"
 "$swingbank" effects --json SEXS GAPS >"$work/two.json"
 law=$SWINGBANK_SOURCE/configs/user_models/torque_voltage_dip.toml
-"$swingbank" effects --law "$law" DIPTORQUE >"$work/law.txt"
-"$swingbank" effects --law "$law" >"$work/laws.txt"
+"$swingbank" effects --user-model "$law" DIPTORQUE >"$work/law.txt"
+"$swingbank" effects --user-model "$law" >"$work/user_models.txt"
 
 /usr/bin/python3 - "$work" "$SWINGBANK_SOURCE" <<'PYTHON'
 import json, pathlib, re, sys
@@ -58,7 +58,7 @@ assert "source: " in two and re.search(r"^  Efd +pu +field voltage$", two, re.M)
 law = (work / "law.txt").read_text()
 assert "DIPTORQUE: torque lost in a voltage dip" in law and "recovery" in law
 assert "configs/user_models/torque_voltage_dip.toml" in law  # the source of the values is the file
-assert "DIPTORQUE" in (work / "laws.txt").read_text() and "DIPTORQUE" not in listed
+assert "DIPTORQUE" in (work / "user_models.txt").read_text() and "DIPTORQUE" not in listed
 PYTHON
 
 refuses "a name mistyped" "no effect 'GENRUO' at NAME \(the nearest names are GENROU" "$swingbank" effects GENRUO
@@ -83,5 +83,5 @@ sexs = next(m for m in c["models"] if m["name"] == "SEXS")
 assert sexs["refused"] == 1 and "SEXS with 1 parameter" in sexs["fault"], sexs
 PYTHON
 refuses "no .dyr file" "none.dyr" "$swingbank" effects --coverage "$work/none.dyr"
-refuses "no file" "no readable user-defined model" "$swingbank" effects --law "$work/none.toml"
+refuses "no file" "no readable user-defined model" "$swingbank" effects --user-model "$work/none.toml"
 misused "unknown option" nonsense "$swingbank" effects --nonsense

@@ -123,7 +123,7 @@ for shell in bash zsh fish; do
   [[ $(completed swingbank comp) == compare ]] || fail "$shell does not complete comp"
   [[ $(completed swingbank help comp) == compare ]] || fail "$shell does not complete help comp"
   [[ $(completed swingbank schema pl) == plant ]] || fail "$shell does not complete schema pl"
-  [[ $(completed swingbank compare --drive "" | xargs) == "pq voltage" ]] || fail "$shell does not complete --drive"
+  [[ $(completed swingbank compare --playback "" | xargs) == "pq voltage" ]] || fail "$shell does not complete --playback"
   [[ -z $(completed swingbank compare --threads "") ]] || [[ $shell == bash ]] || fail "$shell completes a number"
   file=$(completed swingbank compare --model ${model%.toml})
   # bash completes files itself (-o default).

@@ -64,7 +64,7 @@ grep -q STRANGE "$work/stderr" && fail "another unit's model was named"
 "$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32 --drop ESAC9Z >"$work/dropped.toml" 2>"$work/notes"
 grep -q "ESAC9Z of line $line ignored" "$work/notes" || fail "it does not say what was dropped: $(cat "$work/notes")"
 "$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32 --replace ESAC9Z=SEXS >"$work/replaced.toml" 2>"$work/notes"
-grep -q 'standard = true' "$work/replaced.toml" || fail "a replacement of other parameters has no standard values"
+grep -q 'default_values = true' "$work/replaced.toml" || fail "a replacement of other parameters has no standard values"
 refuses "no such bus" "no bus 4711" "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 4711
 refuses "no unit there" "no generator at bus 16" "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 16
 sed '/^bus = 2/d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" >"$work/no_bus.toml"

@@ -96,11 +96,11 @@ misused "unknown option" 'nonsense' predict --records "$work/row-000.csv" --nons
 sed -i '/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = 100.0/' "$work/plant.toml"
 status=0
 "$swingbank" calibrate --model "$work/plant.toml" --records "$work"/row-00[0-3].csv --hold-out row-003 --network "$network" --draws 0 --starts 0 \
-  --spread 0.5 --out "$work/calibrated" --json >"$work/printed.json" 2>"$work/log" || status=$?
+  --prior-sd 0.5 --out "$work/calibrated" --json >"$work/printed.json" 2>"$work/log" || status=$?
 ((status == 0 || status == 3)) || fail "calibrate --network: $(cat "$work/log")"
 "$swingbank" predict --network "$network" --model "$work/plant.toml" --records "$work"/row-00[0-2].csv --out "$work/seen.json" >"$work/log" 2>&1 || fail "predict for --start"
 "$swingbank" calibrate --model "$work/plant.toml" --records "$work"/row-00[0-3].csv --hold-out row-003 --start "$work/seen.json" --draws 0 --starts 0 \
-  --spread 0.5 --out "$work/started" --json >"$work/started.json" 2>"$work/log" || (($? == 3)) || fail "calibrate --start: $(cat "$work/log")"
+  --prior-sd 0.5 --out "$work/started" --json >"$work/started.json" 2>"$work/log" || (($? == 3)) || fail "calibrate --start: $(cat "$work/log")"
 /usr/bin/python3 - "$work" <<'PYTHON'
 import json, sys
 load = lambda name: json.load(open(f"{sys.argv[1]}/{name}"))

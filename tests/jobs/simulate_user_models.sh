@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank simulate --law and --attach: a law from a file and disturbances in both integrators; errors are reported.
+# swingbank simulate --user-model and --attach: a law from a file and disturbances in both integrators; errors are reported.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks laws=$SWINGBANK_SOURCE/configs/user_models
@@ -8,7 +8,7 @@ simulate() {
     --fault 5:1:1.1 --plants 2 --channels delta,Efd,Tm "$@"
 }
 for integrator in reference lanes; do
-  simulate --integrator $integrator --law "$laws/sexs.toml" --attach 2:SEXSLAW:K=50,EMAX=4 \
+  simulate --integrator $integrator --user-model "$laws/sexs.toml" --attach 2:SEXSLAW:K=50,EMAX=4 \
     --attach 2:FORCEDOSC:amplitude=0.02,frequency=0.7,start=2 --out "$work/law_$integrator.csv" >/dev/null
   simulate --integrator $integrator --attach 2:SEXS:K=50,EMAX=4 \
     --attach 2:FORCEDOSC:amplitude=0.02,frequency=0.7,start=2 --out "$work/compiled_$integrator.csv" >/dev/null
@@ -30,13 +30,13 @@ assert worst("law_lanes", "law_reference") < 1e-4  # what the lanes promise
 assert worst("law_lanes", "plain") > 0.1  # both act
 PYTHON
 
-refuses "no file" "no readable user-defined model at $work/none.toml" simulate --law "$work/none.toml" --out "$work/x.csv"
+refuses "no file" "no readable user-defined model at $work/none.toml" simulate --user-model "$work/none.toml" --out "$work/x.csv"
 printf 'name = "L"\ntitle = "t"\nsource = "s"\noutput = "Vs"\naction = "add"\nvalue = "1 + nothing"\n' >"$work/bad.toml"
 refuses "a fault in a law" "unknown name nothing in value at $work/bad.toml:6:14" \
-  simulate --law "$work/bad.toml" --out "$work/x.csv"
+  simulate --user-model "$work/bad.toml" --out "$work/x.csv"
 refuses "no such plant" "no plant 77" simulate --attach 77:SEXS --out "$work/x.csv"
 refuses "no such effect" "no effect 'SEXSLAW'" simulate --attach 2:SEXSLAW --out "$work/x.csv"
 printf 'name = "L"\ntitle = "t"\nsource = "s"\noutput = "Tm"\naction = "add"\nvalue = "V"\n' >"$work/moves.toml"
 refuses "a law that does not rest" "cannot hold the operating point.*it adds 1.045 pu to Tm" \
-  simulate --law "$work/moves.toml" --attach 2:L --out "$work/x.csv"
+  simulate --user-model "$work/moves.toml" --attach 2:L --out "$work/x.csv"
 [[ ! -e $work/x.csv ]] || fail "a refused run left a file"

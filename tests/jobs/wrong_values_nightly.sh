@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Nothing is missing, but three values of fifteen are wrong by 30 %: blind cases of the usual mixture without a hidden
-# effect and with a TGOV1. `calibrate --fewest` must select exactly the three drawn parameters in four of five cases,
+# effect and with a TGOV1. `calibrate --sparse` must select exactly the three drawn parameters in four of five cases,
 # and never more than two others. SWINGBANK_CASES=36; SWINGBANK_KEEP=FOLDER keeps everything and continues from it.
 # shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
@@ -52,7 +52,7 @@ for file in sorted((folder / "run/truth").glob("*.json")):
     (out / "model.toml").write_text(with_values((case / "model.toml").read_text(), values))
     said = out / "said.json"
     if not said.exists():
-        run = subprocess.run([swingbank, "calibrate", "--fewest", "--json", "--quiet", "--model", out / "model.toml",
+        run = subprocess.run([swingbank, "calibrate", "--sparse", "--json", "--quiet", "--model", out / "model.toml",
                               "--out", out / "calibration", "--records", *sorted(case.glob("event*.csv"))], capture_output=True, text=True)
         if run.returncode not in (0, 3, 4, 5):
             sys.exit(f"FAILED: {truth['case']}: {run.stderr[-500:]}")

@@ -52,9 +52,9 @@ class Fits(unittest.TestCase):
         wrong = true.with_values({"SEXS.K": 0.5 * true["SEXS.K"]})
         with tempfile.TemporaryDirectory() as folder:
             wrong.save(pathlib.Path(folder) / "wrong.toml")
-            said = run_json("calibrate", "--fewest", "--model", pathlib.Path(folder) / "wrong.toml", "--records",
+            said = run_json("calibrate", "--sparse", "--model", pathlib.Path(folder) / "wrong.toml", "--records",
                             *RECORDS, "--power-only", "--json", "--out", pathlib.Path(folder) / "out", codes=(0, 5))
-        got = wrong.calibrate(RECORDS, power_only=True, fewest=True)
+        got = wrong.calibrate(RECORDS, power_only=True, sparse=True)
         self.assertEqual([p.name for p in got.parameters], ["SEXS.K"])
         self.assertEqual([p["name"] for p in got.to_dict()["wrong"]], [p["name"] for p in said["wrong"]])
         self.assertTrue(got.adequate)

@@ -16,7 +16,7 @@ plant = swingbank.Plant("plant.toml")
 played: swingbank.Playback = plant.play("event.csv", power_only=True)
 residual: NDArray[np.float64] = played["Q"].residual
 fitted: float = plant.calibrate(["a.csv", "b.csv"], hold_out=["b.csv"]).parameters[0].value
-chosen: dict[str, float] = plant.calibrate(["a.csv"], fewest=True).evidence
+chosen: dict[str, float] = plant.calibrate(["a.csv"], sparse=True).evidence
 point = swingbank.Point("point.toml", plant)
 events: int = len(point.plant.compare(point.records(["a.csv"], columns={"V": "U1 [kV]"})).events)
 names: list[str] = plant.diagnose([swingbank.Record("a.csv", plant), "b.csv"]).effects

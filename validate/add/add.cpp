@@ -157,7 +157,7 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
     names.push_back(h.name);
   const sim::Effect* effect = model.library.find(name);
   const std::string remedy =
-      fmt::format("use one of {}, or load a user-defined model with --law", fmt::join(names, ", "));
+      fmt::format("use one of {}, or load a user-defined model with --user-model", fmt::join(names, ", "));
   if (effect == nullptr)
     throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name",
                       suggestion(name, names, remedy)});

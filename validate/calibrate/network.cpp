@@ -84,10 +84,11 @@ sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::
     if (!within_reach(value, p.low, p.high, prior_sd)) {
       const std::string learnt = p.learnt() ? fmt::format("was trained on {:g} to {:g}", p.low, p.high)
                                             : fmt::format("has the fixed value {:g}", p.low);
-      problems.add(fmt::format("{} = {:g} {}", p.full(), value, p.unit), model.origin,
-                   fmt::format("the network {} {}, further than {:g} x --spread away", estimate.network,
-                               learnt, kBridged),
-                   "train a network about this plant (swingbank add --retrain shows how), or widen --spread");
+      problems.add(
+          fmt::format("{} = {:g} {}", p.full(), value, p.unit), model.origin,
+          fmt::format("the network {} {}, further than {:g} x --prior-sd away", estimate.network, learnt,
+                      kBridged),
+          "train a network about this plant (swingbank add --retrain shows how), or widen --prior-sd");
       continue;
     }
     const auto [low, high] =

@@ -26,7 +26,7 @@ bool strained(const fit::FittedParameter& p) {
 std::string notes(const Calibration& c, std::size_t i) {
   const auto& p = c.parameters[i];
   std::string text = p.fit.at_bound ? "at its bound: interval not valid" : "";
-  if (strained(p.fit)) text += std::string(text.empty() ? "" : "; ") + "outside the prior (--spread)";
+  if (strained(p.fit)) text += std::string(text.empty() ? "" : "; ") + "outside the prior (--prior-sd)";
   if (p.fit.decided < thresholds::parameters.identified)
     text += std::string(text.empty() ? "" : "; ") + "not identified";
   return text;
@@ -145,8 +145,8 @@ std::string terminal_report(const Calibration& c) {
         coloured->colour, coloured->record);
   if (std::ranges::any_of(c.parameters, [](const auto& p) { return strained(p.fit); }))
     text +=
-        "Some values are far outside the prior (--spread), which biases them and correlated "
-        "values. Calibrate again from the new model, or with a larger --spread.\n";
+        "Some values are far outside the prior (--prior-sd), which biases them and correlated "
+        "values. Calibrate again from the new model, or with a larger --prior-sd.\n";
   for (const auto& combination : c.unidentified) text += "- " + describe(c, combination) + "\n";
   const std::string events = identify_text(c);
   if (!events.empty()) text += "Next measurement for each parameter that is not identified:\n" + events;

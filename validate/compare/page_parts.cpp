@@ -299,7 +299,7 @@ void glossary_part(report::Document& page) {
        {"fit, verification",
         "Use of an event: the parameters were fitted to it, or it was held out and verifies the fit."},
        {"prior standard deviation",
-        fmt::format("Relative to the model's value, before the records are used (--spread, default {:g}).",
+        fmt::format("Relative to the model's value, before the records are used (--prior-sd, default {:g}).",
                     thresholds::parameters.prior_sd.value)},
        {"variance reduction",
         "Reduction of the parameter's variance by the records: 1 − posterior variance / prior variance."}}});

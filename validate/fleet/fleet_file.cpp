@@ -18,7 +18,7 @@ bool is_name(const std::string& name) {
 
 /// Reads the options of one plant or of all plants; missing options keep their values.
 void read_options(Config& c, const std::string& at, FleetPlant& p) {
-  p.prior_sd = c.optional<double>(at + "spread", p.prior_sd,
+  p.prior_sd = c.optional<double>(at + "prior_sd", p.prior_sd,
                                   {0.001, 2.0, "relative", "prior standard deviation of the parameters"});
   p.power_only =
       c.optional<bool>(at + "power_only", p.power_only,

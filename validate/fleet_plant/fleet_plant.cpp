@@ -169,7 +169,7 @@ std::string plant_json(const FleetRow& row) { return json_text(fleet::row_json(r
 std::string command_of(const FleetPlant& plant, const std::vector<std::string>& files) {
   std::string text = fmt::format("swingbank diagnose --model {} --records", plant.model.string());
   for (const auto& file : files) text += " " + file;
-  text += fmt::format(" --spread {:g}", plant.prior_sd);
+  text += fmt::format(" --prior-sd {:g}", plant.prior_sd);
   return text + (plant.power_only ? " --power-only" : "");
 }
 

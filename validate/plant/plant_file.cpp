@@ -59,7 +59,7 @@ void append_block(std::string& text, const PlantModel& model, const sim::plant::
   text += "\neffect = " + in_quotes(effect.name) + "  " + comment(std::string(effect.title));
   bool standard = false;
   for (std::size_t i = 0; i < block.p.size(); ++i) standard = standard || left_default(model, block, i);
-  if (standard) text += "standard = true  # entries in comments have default values\n";
+  if (standard) text += "default_values = true  # entries in comments have default values\n";
   for (std::size_t i = 0; i < block.p.size(); ++i) {
     const auto& p = effect.parameters[i];
     const std::string entry =
@@ -100,7 +100,7 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
   for (const auto& line : provenance) text += comment(line);
   std::string list;
   for (const auto& user_model : user_models) list += (list.empty() ? "" : ", ") + in_quotes(user_model);
-  if (!user_models.empty()) text += "laws = [" + list + "]\n";
+  if (!user_models.empty()) text += "user_models = [" + list + "]\n";
   const bool power = model.conventions.mechanical_power;
   text += fmt::format(
       "[plant]\nname = {}\nbase_mva = {}  # machine base [MVA], of all per-unit values below\n"

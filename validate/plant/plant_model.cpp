@@ -25,7 +25,7 @@ using sim::Slot;
 constexpr double kSmallest = 1e-9;     ///< lower bound of bases and frequencies
 constexpr double kMostBuses = 999999;  ///< largest bus number of PSS/E
 
-constexpr const char* kUserModels = "laws";           ///< key of the files of user-defined models
+constexpr const char* kUserModels = "user_models";    ///< key of the files of user-defined models
 constexpr std::string_view kConverter = "converter";  ///< section of a converter as the source
 
 using sim::library::EffectLibrary;
@@ -71,7 +71,7 @@ sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const
   }
   const bool sound = config.sound();
   const bool may_miss =
-      config.optional<bool>(section + ".standard", false,
+      config.optional<bool>(section + ".default_values", false,
                             {.meaning = "true: a missing parameter has its default, and reports list it"});
   const auto given = config.keys(section);
   for (const auto& p : block.effect->parameters) {
@@ -113,7 +113,7 @@ std::vector<sim::plant::Block> read_several(Config& config, PlantModel& model, S
     const std::string section = fmt::format("{}[{}]", name, k);
     const sim::plant::Block block = read_block(config, model, slot, section);
     if (!block.effect) continue;
-    std::vector<std::string> known = {"effect", "standard"};
+    std::vector<std::string> known = {"effect", "default_values"};
     for (const auto& p : block.effect->parameters) known.emplace_back(p.name);
     for (const auto& key : config.keys(section))
       if (!std::ranges::count(known, key))

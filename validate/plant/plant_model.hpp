@@ -31,7 +31,8 @@ struct PlantModel {
   /// condition.
   std::optional<sim::grid::Dispatch> dispatch = {};
   Nameplate nameplate = {};  ///< nameplate of the plant, for reports
-  /// Parameters ("SEXS.TE") that have default values because the file does not give them (`standard = true`).
+  /// Parameters ("SEXS.TE") that have default values because the file does not give them (`default_values =
+  /// true`).
   std::vector<std::string> defaults = {};
   /// Plant before a calibration that was rejected; its parameters do not compensate for a missing effect.
   std::optional<sim::plant::Plant> submitted = {};
@@ -50,9 +51,9 @@ struct PlantModel {
 std::string subject(const PlantModel& model);
 
 /// Reads a plant file (configs/plants/README.md). Every parameter of every effect must be given by name;
-/// missing ones take default values only if their block has `standard = true`. Throws InputError with every
-/// fault of the file: unknown keys, effects or parameters (the known ones are listed), missing ones, wrong
-/// types, values that the equations do not allow. Unusual values become warnings, each with its line.
+/// missing ones take default values only if their block has `default_values = true`. Throws InputError with
+/// every fault of the file: unknown keys, effects or parameters (the known ones are listed), missing ones,
+/// wrong types, values that the equations do not allow. Unusual values become warnings, each with its line.
 PlantModel load_plant_model(const std::filesystem::path& file);
 /// Reads a plant file from its text. `file` names it in messages; relative paths refer to its folder.
 PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file);

@@ -187,7 +187,7 @@ std::vector<double> angle_of_frequency(const Record& r) {
 void require_angle(const Record& record) {
   if (record.angle == AngleSource::none)
     throw InputError({"no angle and no frequency", record.name, "playback needs the angle of the voltage",
-                      "record one of them, or play in P and Q: swingbank compare --drive pq"});
+                      "record one of them, or play in P and Q: swingbank compare --playback pq"});
 }
 
 std::string utc_text(double epoch) {

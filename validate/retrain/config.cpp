@@ -44,7 +44,7 @@ class Base {
       else
         table_.insert_or_assign(key, fs::absolute(file_.parent_path() / *path).lexically_normal().string());
     }
-    if (auto* user_models = table_["laws"].as_array())
+    if (auto* user_models = table_["user_models"].as_array())
       for (auto& user_model : *user_models)
         if (const auto path = user_model.value<std::string>())
           user_model.ref<std::string>() =
@@ -114,10 +114,10 @@ void add_effect_to(toml::table& dataset, const Base& base, const add::Addition& 
     if (!dataset["attach"].is_array()) dataset.insert_or_assign("attach", toml::array{});
     for (const auto& plant : base.plants())
       dataset["attach"].as_array()->push_back(attachment(plant, *block));
-    if (!dataset["laws"].is_array()) dataset.insert_or_assign("laws", toml::array{});
+    if (!dataset["user_models"].is_array()) dataset.insert_or_assign("user_models", toml::array{});
     for (const auto& user_model : added.model.user_models)
-      dataset["laws"].as_array()->push_back(fs::absolute(user_model).lexically_normal().string());
-    if (dataset["laws"].as_array()->empty()) dataset.erase("laws");
+      dataset["user_models"].as_array()->push_back(fs::absolute(user_model).lexically_normal().string());
+    if (dataset["user_models"].as_array()->empty()) dataset.erase("user_models");
   }
   const auto machine = std::string(added.model.plant.machine.effect->name);
   for (int i = 0; i < added.own; ++i) {

@@ -107,7 +107,7 @@ std::string config_text(const plant::PlantModel& model, double range) {
     user_models.push_back(fs::absolute(user_model).lexically_normal().string());
   std::string text = fmt::format("raw = \"plant.raw\"\ndyr = \"plant.dyr\"\nconvention = \"{}\"\n",
                                  model.conventions.mechanical_power ? "psse" : "andes");
-  if (!user_models.empty()) text += "laws = " + list_of(user_models) + "\n";
+  if (!user_models.empty()) text += "user_models = " + list_of(user_models) + "\n";
   if (!attached.empty()) text += "attach = " + list_of(attached) + "\n";
   text += fmt::format("\n[vary]\nwho = \"one\"\ngenerators = [1]\nmodel = \"{}\"\n\n[vary.box]\n",
                       plant.machine.effect->name);

@@ -73,9 +73,10 @@ sim::grid::EventTexts read_texts(Config& c) {
 
 void read_grid(Config& c, SystemCase& s) {
   sim::library::EffectLibrary library;
-  for (const auto& name : c.optional<Texts>(
-           "laws", {}, {.meaning = "files of user-defined models, relative to the folder of this file"}))
-    attempt(c, "laws", [&] {
+  for (const auto& name :
+       c.optional<Texts>("user_models", {},
+                         {.meaning = "files of user-defined models, relative to the folder of this file"}))
+    attempt(c, "user_models", [&] {
       const fs::path user_model = (c.name().parent_path() / name).lexically_normal();
       sim::user_models::load_user_model(user_model, library);
       s.user_models.emplace_back(user_model, sha256_of(user_model));
@@ -234,7 +235,7 @@ SystemCase read_system(Config& c, SystemCase s) {
                                  {1e-9, 1e9, "kV", "base of the voltage, needed if a record gives it in kV"});
   s.texts = read_texts(c);
   s.switching_times_from_records =
-      c.choice("event.instants", {"given", "found"}, "given",
+      c.choice("event.switching_times", {"given", "found"}, "given",
                {.meaning = "switching times: as given, or estimated from the records"}) == "found";
   s.steady_state =
       c.choice("compare.steady_state", {"judge", "shift"}, "judge",

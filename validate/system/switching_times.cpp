@@ -135,9 +135,10 @@ std::vector<double> estimate_switching_times(const SystemCase& s, double& uncert
     }
   }
   if (votes == 0)
-    throw InputError({fmt::format("{} switching times", written.size()), s.file.string() + ", event.instants",
+    throw InputError({fmt::format("{} switching times", written.size()),
+                      s.file.string() + ", event.switching_times",
                       "no record has this number of voltage steps (" + counts + ")",
-                      "give the switching times (event.instants = \"given\")"});
+                      "give the switching times (event.switching_times = \"given\")"});
   for (double& t : sum) t /= votes;
   return SwitchingTimeFit(s, written, sum).run(uncertainty);
 }
@@ -155,7 +156,7 @@ std::string clock_doubt(const record::Record& record, const std::vector<double>&
   if (!off) return {};
   return fmt::format(
       "The voltage of {} has steps at {} (± {:.1f} ms), not at the event's switching times: "
-      "check its clock, or estimate the times from the records (event.instants = \"found\").",
+      "check its clock, or estimate the times from the records (event.switching_times = \"found\").",
       record.name, seen, 1e3 * voltage_steps.front().uncertainty);
 }
 

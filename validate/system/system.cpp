@@ -297,11 +297,11 @@ SystemComparison compare_system(const SystemCase& s) {
         fmt::format("The simulation ended at {:.3f} s: {}. Later samples repeat its last value.",
                     c.stopped_at, sim::outcome_name(c.outcome)));
   if (s.switching_times_from_records)
-    c.notes.push_back(
-        fmt::format("Switching times were estimated from the records (each to ± {:.1f} ms) and refined by "
-                    "the fit of the model to the records. Give them (event.instants = \"given\") where they "
-                    "are known.",
-                    1e3 * c.uncertainty));
+    c.notes.push_back(fmt::format(
+        "Switching times were estimated from the records (each to ± {:.1f} ms) and refined by "
+        "the fit of the model to the records. Give them (event.switching_times = \"given\") where they "
+        "are known.",
+        1e3 * c.uncertainty));
   if (s.steady_state == SteadyState::shift)
     c.notes.push_back(
         "The difference before the event was subtracted from every channel (compare.steady_state "

@@ -160,26 +160,26 @@ inline constexpr Search search;  ///< the thresholds in use
 struct UserModels {
   /// Largest share of the base model's chi2 that may remain with an inferred input for a user-defined model
   /// to be searched [-].
-  Threshold explains{"laws.explains", 0.3, "share of the base model's chi2",
+  Threshold explains{"user_models.explains", 0.3, "share of the base model's chi2",
                      "largest share that may remain with the inferred input if a user-defined model is "
                      "searched: a reduction by 70 % (decision 21)"};
   /// Largest ratio of chi2 at which models of the other input are searched too [-].
-  Threshold as_much{"laws.as_much", 1.5, "ratio of chi2",
+  Threshold as_much{"user_models.as_much", 1.5, "ratio of chi2",
                     "largest ratio of the chi2 of the other inferred input to that of the better one, if "
                     "both explain the residual equally well (decision 21)"};
   /// Least share of the inferred input that a fitted user-defined model explains [-].
-  Threshold least_explained{"laws.least_explained", 0.3, "share of the inferred input",
+  Threshold least_explained{"user_models.least_explained", 0.3, "share of the inferred input",
                             "user-defined models that explain less are not fitted (decision 21)"};
   /// Reduced chi-square of the first fit above which a user-defined model is not judged [chi2 per value].
   Threshold judged_below{
-      "laws.judged_below", 2, "chi2 per value",
+      "user_models.judged_below", 2, "chi2 per value",
       "user-defined models whose first fit has a larger reduced chi-square are not judged (decision 21)"};
   /// Additional evidence for a user-defined model that depends on the record's time [chi2].
-  Threshold own_time{"laws.own_time", 6, "chi2",
+  Threshold own_time{"user_models.own_time", 6, "chi2",
                      "additional evidence of a model of the record's own time, which is meaningful only if "
                      "all records begin alike (decision 21)"};
   /// Additional evidence for a user-defined model whose output is proportional to the initial value [chi2].
-  Threshold in_proportion{"laws.in_proportion", 3, "chi2",
+  Threshold in_proportion{"user_models.in_proportion", 3, "chi2",
                           "additional evidence of a model in proportion to the initial value (decision 21)"};
 };
 inline constexpr UserModels user_models;  ///< the thresholds in use
@@ -203,7 +203,7 @@ struct Parameters {
   /// Prior standard deviation of a model's parameters, relative [-].
   Threshold prior_sd{
       "parameters.prior_sd", 0.2, "relative",
-      "prior standard deviation of a model's parameters, unless --spread is given (decision 15)"};
+      "prior standard deviation of a model's parameters, unless --prior-sd is given (decision 15)"};
   /// Reduction of a parameter's variance by the records, below which the parameter is not identified [-].
   Threshold identified{"parameters.identified", 0.5, "share determined by the records",
                        "parameters, or combinations of parameters, below this are not identified"};

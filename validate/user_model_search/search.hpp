@@ -17,7 +17,7 @@ struct UserModelFinding {
   std::shared_ptr<const sim::Effect> effect;  ///< compiled form of the model
   hypothesis::Judgement judgement;            ///< its plant contains the model
   std::string words;                          ///< description with fitted values, units and intervals
-  std::string toml;                           ///< TOML file for `swingbank add NAME --law FILE`
+  std::string toml;                           ///< TOML file for `swingbank add NAME --user-model FILE`
 };
 
 /// Result of a search for user-defined models.

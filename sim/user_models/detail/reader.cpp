@@ -106,9 +106,10 @@ void Reader::read_parameters() {
     p.low = config_.require<double>(key + "low");
     p.high = config_.require<double>(key + "high", {p.low});
     const Range range{p.low, std::max(p.low, p.high), std::string(p.unit)};
-    p.default_value = config_.require<double>(key + "standard", range);
-    p.null_value = config_.has(key + "neutral") ? config_.require<double>(key + "neutral", range)
-                                                : config_.optional<double>(key + "neutral", kNoNullValue);
+    p.default_value = config_.require<double>(key + "default", range);
+    p.null_value = config_.has(key + "null_value")
+                       ? config_.require<double>(key + "null_value", range)
+                       : config_.optional<double>(key + "null_value", kNoNullValue);
     p.meaning = keep(config_.require<std::string>(key + "meaning"));
     const auto source = config_.optional<std::string>(key + "source", file_);
     p.default_from = p.bounds_from = literature::user_model(keep(source));
@@ -198,10 +199,10 @@ void Reader::read_requirements() {
       requirement_vertices_.emplace_back(a, b);
     }
   }
-  if (!config_.has("instants")) return;
-  const auto texts = config_.require<std::vector<std::string>>("instants");
+  if (!config_.has("switching_times")) return;
+  const auto texts = config_.require<std::vector<std::string>>("switching_times");
   for (std::size_t i = 0; i < texts.size(); ++i) {
-    const std::string key = fmt::format("instants[{}]", i);
+    const std::string key = fmt::format("switching_times[{}]", i);
     Fault fault;
     const Tree tree = parse_value(texts[i], fault);
     if (!tree) {

@@ -95,7 +95,7 @@ TEST(VariedEffects, RefusalsNameLineAndRemedy) {
   EXPECT_THAT(refusal("\"all:SEXS:K=100", "\"all:SEXS:K=-1"), HasSubstr("an exciter needs a gain"));
   EXPECT_THAT(refusal("attach = [", "attach = [\"30:IEEET1\", "),
               HasSubstr("a second exciter, SEXS, for plant 30"));
-  EXPECT_THAT(refusal("attach = [", "laws = [\"none.toml\"]\nattach = ["), HasSubstr("none.toml"));
+  EXPECT_THAT(refusal("attach = [", "user_models = [\"none.toml\"]\nattach = ["), HasSubstr("none.toml"));
 }
 
 TEST(VariedEffects, HashCoversThemAndOlderConfigsKeepTheirHash) {
@@ -194,10 +194,10 @@ TEST(VariedEffects, UserDefinedModelsVaryLikeCompiledEffects) {
   const std::string user_model = (fs::path(SWINGBANK_SOURCE) / "configs/user_models/sexs.toml").string();
   std::vector<store::ShardData> both;
   for (const std::string name : {"SEXS", "SEXSLAW"}) {
-    const DatasetConfig c =
-        varied_config({{"attach = [\"all:SEXS", "laws = [\"" + user_model + "\"]\nattach = [\"all:" + name},
-                       {"effects.SEXS]", "effects." + name + "]"}},
-                      12);
+    const DatasetConfig c = varied_config(
+        {{"attach = [\"all:SEXS", "user_models = [\"" + user_model + "\"]\nattach = [\"all:" + name},
+         {"effects.SEXS]", "effects." + name + "]"}},
+        12);
     VariedCase one(c);
     both.push_back(one.maker.make(0, 12, [](std::uint64_t) {}));
   }

@@ -26,7 +26,7 @@ output = "Vs"
 action = "add"
 value = "{0} * K * speed"
 [parameters]
-K = {{ unit = "pu", standard = {0}, low = 0.0, high = 1000.0, neutral = 0.0, meaning = "gain" }}
+K = {{ unit = "pu", default = {0}, low = 0.0, high = 1000.0, null_value = 0.0, meaning = "gain" }}
 )law",
                      factor);
 }

@@ -66,7 +66,7 @@ input = "forward"
 K = 0.2
 T = 1.5
 [parameters]
-T = {{ unit = "s", standard = 0.5, low = 0.01, high = 5, meaning = "lag" }}
+T = {{ unit = "s", default = 0.5, low = 0.01, high = 5, meaning = "lag" }}
 )law",
                                        kHead);
   const Effect user_model = make_user_model(text, "feedback.toml");
@@ -104,7 +104,9 @@ TEST(UserModelOperatingPoint, RefusesInfeasibleOperatingPointWithReason) {
       "the derivative of x is no number there");
   EXPECT_EQ(refusal(user_model_of("Vs", "add", "value = \"1 / speed\"")), "its Vs is no number there");
   // evaluated before the first switching time, independent of the later value
-  EXPECT_EQ(refusal(user_model_of("Tm", "add", "value = \"select(t < 1, 0, 0.1)\"\ninstants = [\"1\"]")), "");
+  EXPECT_EQ(
+      refusal(user_model_of("Tm", "add", "value = \"select(t < 1, 0, 0.1)\"\nswitching_times = [\"1\"]")),
+      "");
 }
 
 TEST(UserModelOperatingPoint, NamesTheViolatedLimitAndItsValue) {
@@ -133,7 +135,7 @@ TEST(UserModelOperatingPoint, ParametersAreChecked) {
   EXPECT_EQ(problems({std::nan(""), 10.0, 100.0, 0.1, -4.0, 5.0}).size(), 1u);
   const Effect user_model = make_user_model(user_model_of("Vs", "add", R"law(value = "speed / T"
 [parameters]
-T = { unit = "s", standard = 1, low = 0, high = 2, meaning = "divisor" })law"),
+T = { unit = "s", default = 1, low = 0, high = 2, meaning = "divisor" })law"),
                                             "x.toml");
   const double zero = 0.0;
   Problems found;
@@ -141,7 +143,7 @@ T = { unit = "s", standard = 1, low = 0, high = 2, meaning = "divisor" })law"),
   (void)found;  // speed / T divides by zero in the loop: refused at the operating point
   EXPECT_EQ(refusal(user_model_of("Vs", "add", R"law(value = "speed / T"
 [parameters]
-T = { unit = "s", standard = 0, low = 0, high = 2, meaning = "divisor" })law")),
+T = { unit = "s", default = 0, low = 0, high = 2, meaning = "divisor" })law")),
             "its Vs is no number there");
 }
 

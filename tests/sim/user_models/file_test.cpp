@@ -107,8 +107,8 @@ value = "K * nothing + loop"
 surplus = 1
 require = ["K < speed", "K +"]
 [parameters]
-K = { unit = "pu", standard = 5.0, low = 0.0, high = 1.0, meaning = "gain" }
-speed = { unit = "pu", standard = 0.5, low = 0.0, high = 1.0, meaning = "a signal's name" }
+K = { unit = "pu", default = 5.0, low = 0.0, high = 1.0, meaning = "gain" }
+speed = { unit = "pu", default = 0.5, low = 0.0, high = 1.0, meaning = "a signal's name" }
 [signals]
 loop = "loop + 1"
 [states.x]
@@ -166,8 +166,8 @@ TEST(UserModelFile, EqualTextsInTwoLibrariesAreOneEffect) {
 TEST(UserModelFile, SourceOfAValueIsTheParametersOrTheFile) {
   const Effect user_model = make_user_model(user_model_of("Vs", "add", R"law(value = "a * b * 0"
 [parameters]
-a = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "said", source = "a plant's data sheet" }
-b = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "not said" })law"),
+a = { unit = "pu", default = 1, low = 0, high = 2, meaning = "said", source = "a plant's data sheet" }
+b = { unit = "pu", default = 1, low = 0, high = 2, meaning = "not said" })law"),
                                             "plant.toml");
   EXPECT_EQ(as_text(user_model.parameters[0].default_from), "a plant's data sheet");
   EXPECT_EQ(as_text(user_model.parameters[0].bounds_from), "a plant's data sheet");
@@ -177,9 +177,9 @@ b = { unit = "pu", standard = 1, low = 0, high = 2, meaning = "not said" })law")
 TEST(UserModelFile, SwitchingTimesComeFromParameters) {
   const Effect user_model =
       make_user_model(user_model_of("Tm", "add", R"law(value = "select(t < start, 0, 0.1)"
-instants = ["start", "start + 2"]
+switching_times = ["start", "start + 2"]
 [parameters]
-start = { unit = "s", standard = 1, low = 0, high = 20, meaning = "when" })law"),
+start = { unit = "s", default = 1, low = 0, high = 20, meaning = "when" })law"),
                       "x.toml");
   const double start = 3.0;
   ASSERT_NE(user_model.switching_times, nullptr);

@@ -49,10 +49,10 @@ meaning = "rests at sqrt(V): found by Newton's method"
 derivative = "10 * (V - square^2) + 0.1 * min(washed, max(e, -0.1))"
 start = "1"
 [parameters]
-K = { unit = "pu", standard = 5.0, low = 0.0, high = 100.0, neutral = 0.0, meaning = "gain" }
-T = { unit = "s", standard = 2.0, low = 0.1, high = 100.0, meaning = "washout" }
-band = { unit = "pu", standard = 0.0005, low = 0.0, high = 0.1, meaning = "dead-band" }
-limit = { unit = "pu", standard = 0.1, low = 0.01, high = 1.0, meaning = "limit" }
+K = { unit = "pu", default = 5.0, low = 0.0, high = 100.0, null_value = 0.0, meaning = "gain" }
+T = { unit = "s", default = 2.0, low = 0.1, high = 100.0, meaning = "washout" }
+band = { unit = "pu", default = 0.0005, low = 0.0, high = 0.1, meaning = "dead-band" }
+limit = { unit = "pu", default = 0.1, low = 0.01, high = 1.0, meaning = "limit" }
 )law";
 
 }  // namespace swingbank::sim::test

@@ -39,12 +39,12 @@ derivative = "(K * ahead - efd) / TE"
 low = "EMIN"
 high = "EMAX"
 [parameters]
-TAoverTB = { unit = "-", standard = 0.1, low = 0.0, high = 10.0, meaning = "lead over lag" }
-TB = { unit = "s", standard = 10.0, low = 0.001, high = 100.0, meaning = "lag" }
-K = { unit = "pu", standard = 100.0, low = 0.5, high = 2000.0, meaning = "gain" }
-TE = { unit = "s", standard = 0.1, low = 0.001, high = 5.0, meaning = "exciter" }
-EMIN = { unit = "pu", standard = -4.0, low = -100.0, high = 0.0, meaning = "lower" }
-EMAX = { unit = "pu", standard = 5.0, low = 0.5, high = 100.0, meaning = "upper" }
+TAoverTB = { unit = "-", default = 0.1, low = 0.0, high = 10.0, meaning = "lead over lag" }
+TB = { unit = "s", default = 10.0, low = 0.001, high = 100.0, meaning = "lag" }
+K = { unit = "pu", default = 100.0, low = 0.5, high = 2000.0, meaning = "gain" }
+TE = { unit = "s", default = 0.1, low = 0.001, high = 5.0, meaning = "exciter" }
+EMIN = { unit = "pu", default = -4.0, low = -100.0, high = 0.0, meaning = "lower" }
+EMAX = { unit = "pu", default = 5.0, low = 0.5, high = 100.0, meaning = "upper" }
 )law";
 /// The same exciter as a transfer function with a clamp behind it (which winds up).
 constexpr const char* kByTransferFunction = R"law(
@@ -62,10 +62,10 @@ kind = "transfer_function"
 numerator = ["K", "K * TAoverTB * TB"]
 denominator = ["1", "TB + TE", "TB * TE"]
 [parameters]
-TAoverTB = { unit = "-", standard = 0.1, low = 0.0, high = 10.0, meaning = "lead over lag" }
-TB = { unit = "s", standard = 10.0, low = 0.001, high = 100.0, meaning = "lag" }
-K = { unit = "pu", standard = 100.0, low = 0.5, high = 2000.0, meaning = "gain" }
-TE = { unit = "s", standard = 0.1, low = 0.001, high = 5.0, meaning = "exciter" }
+TAoverTB = { unit = "-", default = 0.1, low = 0.0, high = 10.0, meaning = "lead over lag" }
+TB = { unit = "s", default = 10.0, low = 0.001, high = 100.0, meaning = "lag" }
+K = { unit = "pu", default = 100.0, low = 0.5, high = 2000.0, meaning = "gain" }
+TE = { unit = "s", default = 0.1, low = 0.001, high = 5.0, meaning = "exciter" }
 )law";
 
 TEST(UserModelFile, ThreeWaysOfWritingAnExciterAgree) {

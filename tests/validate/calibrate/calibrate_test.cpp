@@ -109,7 +109,7 @@ std::vector<double> bounds_of(const sim::plant::Plant& truth, const Calibration&
 
 TEST(Calibrate, FindsTheTruthAndExplainsTheUnseenEvent) {
   plant::PlantModel model = example();
-  model.plant.controls.push_back(sexs(0.12, 85, 8.5, 0.06));  // within 20 %, the prior of --spread
+  model.plant.controls.push_back(sexs(0.12, 85, 8.5, 0.06));  // within 20 %, the prior of --prior-sd
   CalibrateOptions options;
   options.draws = 2;
   options.starts = 1;

@@ -84,7 +84,7 @@ TEST_F(FleetFiles, CommonOptionsApply_WhenAPlantSetsNone) {
   const Fleet fleet = load_fleet(write("fleet.toml", R"(
 [options]
 power_only = true
-spread = 0.3
+prior_sd = 0.3
 [plant.b]
 model = "m.toml"
 records = ["e1.csv", "e*.csv"]
@@ -92,7 +92,7 @@ records = ["e1.csv", "e*.csv"]
 model = "/elsewhere/m.toml"
 records = ["e.csv"]
 power_only = false
-spread = 0.1
+prior_sd = 0.1
 )"));
   ASSERT_EQ(fleet.plants.size(), 2);
   EXPECT_EQ(fleet.plants[0].name, "a");  // sorted by name
@@ -108,7 +108,7 @@ spread = 0.1
 TEST_F(FleetFiles, ReportsEveryFaultAtOnce) {
   const std::string said = problems(R"(
 [options]
-spread = -1
+prior_sd = -1
 [plant.a]
 model = 3
 records = []

@@ -114,7 +114,7 @@ TEST_F(PlantFileTest, CopiesUserModelsToItsFolder) {
   std::filesystem::copy_file(user_model, folder_ / "law.toml");
   const std::string text = plant_text(m, {});
   const std::string with_user_model =
-      "laws = [\"law.toml\"]\n" + text +
+      "user_models = [\"law.toml\"]\n" + text +
       "\n[[shaft]]\neffect = \"DIPTORQUE\"\nloss = 0.1\nthreshold = 0.15\ndepth = 0.3\nrecovery = 4.0\n";
   write_file(folder_ / "first.toml", with_user_model);
   m = load_plant_model(folder_ / "first.toml");

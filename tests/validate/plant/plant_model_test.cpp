@@ -65,11 +65,11 @@ TEST_F(PlantModelTest, ReadsUserModelsOfItsFolder) {
   const std::string user_model = test::source("configs/user_models/torque_voltage_dip.toml");
   const std::string shaft =
       "\n[shaft]\neffect = \"DIPTORQUE\"\nloss = 0.2\nthreshold = 0.1\ndepth = 0.3\nrecovery = 2.0\n";
-  const PlantModel m = load("laws = [\"" + user_model + "\"]\n" + example_text() + shaft);
+  const PlantModel m = load("user_models = [\"" + user_model + "\"]\n" + example_text() + shaft);
   ASSERT_EQ(m.plant.controls.size(), 1u);
   EXPECT_EQ(m.plant.controls[0].effect->name, "DIPTORQUE");
   EXPECT_EQ(m.plant.controls[0].p, (std::vector<double>{0.2, 0.1, 0.3, 2.0}));
-  EXPECT_THAT(faults("laws = [\"none.toml\"]\n" + example_text()),
+  EXPECT_THAT(faults("user_models = [\"none.toml\"]\n" + example_text()),
               ElementsAre(AllOf(HasSubstr("no readable user-defined model"), HasSubstr("none.toml"))));
 }
 /// Plants in different folders, each with a user-defined model of the same file name and effect name.
@@ -80,10 +80,10 @@ TEST_F(PlantModelTest, ThreadsReadPlantsWithEquallyNamedUserModels) {
     write_file(own / "law.toml",
                "name = \"MINE\"\ntitle = \"dip\"\nsource = \"test\"\noutput = \"Tm\"\naction = \"add\"\n"
                "value = \"" +
-                   depth + " * K * (V - V0)\"\n[parameters]\nK = { unit = \"pu\", standard = " + depth +
+                   depth + " * K * (V - V0)\"\n[parameters]\nK = { unit = \"pu\", default = " + depth +
                    ", low = 0.0, high = 9.0, meaning = \"gain\" }\n");
     write_file(own / "plant.toml",
-               "laws = [\"law.toml\"]\n" + example_text() + "\n[shaft]\neffect = \"MINE\"\nK = 1.0\n");
+               "user_models = [\"law.toml\"]\n" + example_text() + "\n[shaft]\neffect = \"MINE\"\nK = 1.0\n");
     return load_plant_model(own / "plant.toml");
   };
   const std::vector<std::string> depths = {"1.5", "2.5"};
@@ -172,7 +172,7 @@ TEST_F(PlantModelTest, ControlsAreAddedAndDroppedBesideAGrid) {
       "100.0\n[grid]\nraw = \"" +
       folder + "/ieee39_genrou.raw\"\ndyr = \"" + folder + "/ieee39_genrou.dyr\"\nbus = 31\n";
   const PlantModel plain = load(text);
-  const std::string sexs = "[exciter]\neffect = \"SEXS\"\nstandard = true\nK = 150.0\n";
+  const std::string sexs = "[exciter]\neffect = \"SEXS\"\ndefault_values = true\nK = 150.0\n";
   const PlantModel m = load(text + sexs);
   ASSERT_EQ(m.plant.controls.size(), plain.plant.controls.size() + 1);
   EXPECT_EQ(m.plant.machine.p, plain.plant.machine.p);
@@ -262,7 +262,7 @@ TEST_F(PlantModelTest, BiasedModelKeepsTheSubmittedValues) {
 TEST_F(PlantModelTest, UsesDefaultValuesOnRequest) {
   const std::string block = "\n[exciter]\neffect = \"SEXS\"\nK = 150.0\n";
   EXPECT_THAT(faults(example_text() + block), Contains(HasSubstr("exciter.TE")));
-  const PlantModel m = load(example_text() + block + "standard = true\n");
+  const PlantModel m = load(example_text() + block + "default_values = true\n");
   const auto& sexs = m.plant.controls.at(0);
   const auto standard = sexs.effect->default_parameters();
   for (std::size_t i = 0; i < sexs.p.size(); ++i)
@@ -270,7 +270,8 @@ TEST_F(PlantModelTest, UsesDefaultValuesOnRequest) {
   EXPECT_THAT(m.defaults, ::testing::UnorderedElementsAre("SEXS.TAoverTB", "SEXS.TB", "SEXS.TE", "SEXS.EMIN",
                                                           "SEXS.EMAX"));
   const std::string written = plant_text(m, {});
-  EXPECT_THAT(written, AllOf(HasSubstr("standard = true"), HasSubstr("\n# TE = "), HasSubstr("\nK = 150.0")));
+  EXPECT_THAT(written,
+              AllOf(HasSubstr("default_values = true"), HasSubstr("\n# TE = "), HasSubstr("\nK = 150.0")));
   EXPECT_EQ(load(written).defaults, m.defaults);
 }
 

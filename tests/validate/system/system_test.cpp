@@ -240,13 +240,14 @@ TEST_F(SystemCompare, SameGridIsAdequate_BehindDeclaredFiltersAtLowNoise) {
 }
 TEST_F(SystemCompare, DeclaredFiltersGiveSwitchingTimes) {
   record({.attached = same, .t_on = kOn, .t_off = kOff, .window = kWindow, .fine = kFineness});
-  const auto found = system("[event]", "[event]\ninstants = \"found\"");
+  const auto found = system("[event]", "[event]\nswitching_times = \"found\"");
   const SystemComparison undeclared = compare_system(load_system(found));
   EXPECT_NEAR(undeclared.switching_times[0], kOn,
               2e-3);  // from the samples after the filtered ones: 0.6 and 0.4 ms off
   EXPECT_NEAR(undeclared.switching_times[1], kOff, 2e-3);
   instruments = "instruments = [\"PMUFILTER\"]\n";
-  const SystemComparison c = compare_system(load_system(system("[event]", "[event]\ninstants = \"found\"")));
+  const SystemComparison c =
+      compare_system(load_system(system("[event]", "[event]\nswitching_times = \"found\"")));
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
   EXPECT_NEAR(c.switching_times[0], kOn, 1e-4);
   EXPECT_NEAR(c.switching_times[1], kOff, 1e-4);
@@ -288,7 +289,8 @@ TEST_F(SystemCompare, FindsSwitchingTimesBetweenSamples) {
   record({.attached = same, .t_on = 2.013, .t_off = 2.107});
   const SystemComparison given = compare_system(load_system(system()));
   EXPECT_FALSE(given.adequacy.adequate);
-  const SystemComparison c = compare_system(load_system(system("[event]", "[event]\ninstants = \"found\"")));
+  const SystemComparison c =
+      compare_system(load_system(system("[event]", "[event]\nswitching_times = \"found\"")));
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
   // Half a sample is 8.3 ms; P and Q after the fault determine the time to 5 % of that.
   EXPECT_NEAR(c.switching_times[0], 2.013, 4e-4);

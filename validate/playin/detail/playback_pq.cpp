@@ -187,13 +187,14 @@ class PowerPlayback {
     const Complex s = (*run_.power)(segment_, t_);
     const std::string when = fmt::format("t = {:.4f} s of {}", t_, run_.record->name);
     if (unsolved_)
-      throw InputError({fmt::format("no terminal voltage for P = {:.4f}, Q = {:.4f} pu", s.real(), s.imag()),
-                        when, "the machine's inner voltage behind its impedance cannot deliver as much",
-                        "check base and sign of P and Q, or play in the voltage instead (--drive voltage)"});
+      throw InputError(
+          {fmt::format("no terminal voltage for P = {:.4f}, Q = {:.4f} pu", s.real(), s.imag()), when,
+           "the machine's inner voltage behind its impedance cannot deliver as much",
+           "check base and sign of P and Q, or play in the voltage instead (--playback voltage)"});
     throw InputError(
         {"playback failed", when, "the plant's equations cannot be integrated further with this power",
          "check the parameters (time constants, limits) and the record at that time, or play in the "
-         "voltage instead (--drive voltage)"});
+         "voltage instead (--playback voltage)"});
   }
 
   const PowerPlaybackRun& run_;

@@ -64,9 +64,9 @@ std::string user_model_toml(const UserModelCandidate& user_model, const std::str
   text += "[parameters]\n";
   for (const auto& p : user_model.parameters)
     text += fmt::format(
-        "{} = {{ unit = \"{}\", standard = {:.17g}, low = {:.17g}, high = {:.17g},{} meaning = {} }}\n",
+        "{} = {{ unit = \"{}\", default = {:.17g}, low = {:.17g}, high = {:.17g},{} meaning = {} }}\n",
         p.name, p.unit, p.value, std::min(p.low, p.value), std::max(p.high, p.value),
-        p.gain ? " neutral = 0.0," : "", in_quotes(p.meaning));
+        p.gain ? " null_value = 0.0," : "", in_quotes(p.meaning));
   return text;
 }
 
