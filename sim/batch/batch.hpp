@@ -3,6 +3,7 @@
 // integrates its own event, with its own time, step size and step acceptance. A finished lane takes the next
 // job from the queue. Lanes share no arithmetic, so each result is bitwise independent of its lane and batch.
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 

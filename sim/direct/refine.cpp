@@ -26,7 +26,6 @@ class MachinePlayback {
  public:
   MachinePlayback(const Effect& machine, const Recording& record, double longest)
       : machine_(machine), record_(record), first_(behind_last_leap(record)) {
-    std::vector<double> p = machine.default_parameters();
     const auto count = std::min(static_cast<std::size_t>(longest / record.step), record.V.size() - first_);
     whole_ = turning(record, 0.0, 0.0, 0, first_ + count);
     steps_ = (count - 1) / 2;

@@ -3,7 +3,6 @@
 // rotor angle and speed are those of the record. Only the flux states are integrated. They decay from their
 // initial values and do not oscillate.
 #include <span>
-#include <string>
 #include <vector>
 
 #include "sim/core/recording.hpp"

@@ -1,7 +1,6 @@
 #include "sim/direct/swing.hpp"
 
 #include <Eigen/Dense>
-#include <cmath>
 
 #include "sim/direct/detail/turning.hpp"
 #include "sim/direct/integral.hpp"

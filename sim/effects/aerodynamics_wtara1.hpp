@@ -1,8 +1,6 @@
 #pragma once
 // WTARA1: aerodynamics of a wind turbine, linear in the pitch angle.
-#include <fmt/format.h>
 
-#include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_control.hpp"
 

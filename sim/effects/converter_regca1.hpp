@@ -2,7 +2,6 @@
 // REGCA1: converter of a wind or photovoltaic plant or a battery, a controlled current.
 #include <fmt/format.h>
 
-#include <vector>
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/controlled_current.hpp"

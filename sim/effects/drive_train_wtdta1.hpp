@@ -1,6 +1,5 @@
 #pragma once
 // WTDTA1: drive train of a wind turbine, one mass or two.
-#include <fmt/format.h>
 
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"

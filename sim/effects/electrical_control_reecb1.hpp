@@ -1,6 +1,5 @@
 #pragma once
 // REECB1: electrical control of a large photovoltaic plant.
-#include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_records.hpp"

@@ -1,6 +1,5 @@
 #pragma once
 // REECC1: electrical control of a battery.
-#include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_records.hpp"

@@ -2,7 +2,6 @@
 // OEL1: over-excitation limiter that lowers the voltage regulator's reference.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string>
 #include <utility>
 

@@ -2,7 +2,6 @@
 // UEL2: under-excitation limiter with straight lines in the P-Q plane.
 #include <fmt/format.h>
 
-#include <array>
 #include <string>
 #include <utility>
 

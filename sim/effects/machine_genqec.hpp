@@ -6,7 +6,6 @@
 // for both axes.
 #include <fmt/format.h>
 
-#include "base/constants.hpp"
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/machine_gentpj.hpp"
 

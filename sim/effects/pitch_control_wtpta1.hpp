@@ -2,7 +2,6 @@
 // WTPTA1: pitch control of a wind turbine.
 #include <fmt/format.h>
 
-#include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_control.hpp"
 

@@ -2,7 +2,6 @@
 // WTTQA1: torque control of a wind turbine, which sets the power reference from the speed.
 #include <fmt/format.h>
 
-#include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_control.hpp"
 

@@ -1,7 +1,6 @@
 #pragma once
 // Reader of MATPOWER cases (.m, version 2).
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "sim/formats/psse.hpp"

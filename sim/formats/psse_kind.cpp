@@ -1,5 +1,4 @@
 // Detection of files of a wrong kind or version, to report one error in place of one per line.
-#include <algorithm>
 #include <array>
 #include <cctype>
 

@@ -1,7 +1,6 @@
 // Reader of .rawx files: the tables of version 35 as JSON. Every row is converted to a record of a .raw, so
 // that both formats share the readers of equipment. Source: PSS/E data format manual, "Extensible Power Flow
 // Data File".
-#include <span>
 
 #include "base/json.hpp"
 #include "sim/formats/detail/psse_raw.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 // A grid ready to run: network, power flow, and one plant per generator with its effects and parameters.
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>

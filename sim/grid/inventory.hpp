@@ -1,7 +1,6 @@
 #pragma once
 // Inventory of a case: its units and models, and how many of them can be modelled.
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <cmath>
-#include <optional>
 
 namespace swingbank::sim::grid {
 namespace {

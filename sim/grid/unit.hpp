@@ -2,7 +2,6 @@
 // One unit of a case: reader of the records of one generator, and writer of .dyr and .dyd records. Errors
 // elsewhere in the case do not affect the reader.
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/SparseLU>
-#include <algorithm>
 
 #include "sim/network/admittance.hpp"
 

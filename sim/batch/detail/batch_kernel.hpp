@@ -3,8 +3,6 @@
 // batch.hpp for the interface.
 #include <cmath>
 #include <limits>
-#include <map>
-#include <string>
 
 #include "sim/batch/detail/internal_network.hpp"
 #include "sim/batch/detail/lane_schedule.hpp"

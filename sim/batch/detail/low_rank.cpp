@@ -1,7 +1,6 @@
 #include "sim/batch/detail/low_rank.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace swingbank::sim::batch {
 

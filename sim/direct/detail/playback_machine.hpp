@@ -1,7 +1,6 @@
 #pragma once
 // Equations of a machine with played-in terminal voltage, evaluated at one time. Efd and mechanical torque
 // keep their values of the steady state before the event.
-#include <array>
 #include <vector>
 
 #include "sim/core/effect.hpp"

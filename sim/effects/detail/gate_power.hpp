@@ -2,7 +2,6 @@
 // Piecewise linear curve from the opening of a gate or valve to power or flow. Its points are in ascending
 // order; unused points are zero. With fewer than two points the output is the opening. The curve is
 // extrapolated linearly beyond its ends.
-#include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
 

@@ -1,7 +1,6 @@
 #pragma once
 // Voltage regulation by generators, and reactive limits. Used by powerflow.cpp only.
 #include <functional>
-#include <map>
 #include <vector>
 
 #include "sim/network/network.hpp"

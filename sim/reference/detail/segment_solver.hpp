@@ -2,7 +2,6 @@
 // Integration of one segment by SUNDIALS IDA with KLU, from consistent values at its start exactly to its
 // end.
 #include <memory>
-#include <vector>
 
 #include "sim/reference/detail/nonzeros.hpp"
 #include "sim/reference/detail/vector.hpp"

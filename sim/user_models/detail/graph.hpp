@@ -4,7 +4,6 @@
 // once per step.
 #include <array>
 #include <map>
-#include <string>
 #include <tuple>
 #include <vector>
 

@@ -2,7 +2,6 @@
 // Reader of user-defined models: resolves names, adds expressions to the graph and converts blocks to states.
 #include <map>
 #include <optional>
-#include <set>
 
 #include "base/config.hpp"
 #include "sim/user_models/detail/definition.hpp"
