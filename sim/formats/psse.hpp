@@ -99,14 +99,6 @@ RawSurvey parse_raw_survey(const std::string& text, const std::string& name, con
 /// the same format.
 void refuse_exchanged(const std::filesystem::path& raw, const std::filesystem::path& dyr);
 
-/// Writes version 32, 33, 34 or 35, lines before transformers. Reading it restores all values bit by bit,
-/// except `origin`, the remarks, Bus::star_of and the steps of switched shunts. Throws InputError if the file
-/// cannot be written or a branch has no .raw form. Such branches are lines with a tap or phase shift, and
-/// transformers with charging or a far-end shunt.
-void write_raw(const network::Network& network, const std::filesystem::path& file, int version = 33);
-/// Returns the text that write_raw writes; `name` replaces the file name in messages.
-std::string raw_text(const network::Network& network, int version, const std::string& name);
-
 /// One record of a .dyr file, with unconverted model parameters.
 struct DyrRecord {
   int bus;                     ///< bus number

@@ -63,9 +63,4 @@ Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dy
 /// Returns a remark as one line: subject, count, and at most `places` places.
 std::string remark_line(const network::Remark& remark, std::size_t places);
 
-/// Writes the plants' models and parameters as a .dyr. Reading it with the network's .raw restores them bit
-/// by bit. Throws InputError if a parameter that belongs in the .raw differs from the network's, or if an
-/// effect has no .dyr form.
-void write_dyr(const Grid& grid, const std::filesystem::path& file);
-
 }  // namespace swingbank::sim::grid

@@ -20,17 +20,6 @@ int Network::bus_index(int number) const {
   return -1;
 }
 
-int Network::branch_index(int from, int to, const std::string& circuit) const {
-  const int f = bus_index(from), t = bus_index(to);
-  if (f < 0 || t < 0) return -1;
-  for (std::size_t i = 0; i < branches.size(); ++i) {
-    const Branch& b = branches[i];
-    const bool joins = (b.from == f && b.to == t) || (b.from == t && b.to == f);
-    if (joins && b.circuit == circuit) return static_cast<int>(i);
-  }
-  return -1;
-}
-
 namespace {
 std::string star_text(const Bus& star) {
   const auto& [first, second, third] = star.star_of;

@@ -103,8 +103,6 @@ struct Network {
   void remark(const std::string& what, const std::string& place);
   /// Returns the index of the bus with this number, or -1. Star points have no number.
   [[nodiscard]] int bus_index(int number) const;
-  /// Returns the index of the branch between two bus numbers (either direction) with this circuit id, or -1.
-  [[nodiscard]] int branch_index(int from, int to, const std::string& circuit) const;
   /// Returns "bus 7" or "star point of 2-3-4" for messages.
   [[nodiscard]] std::string bus_text(int bus) const;
   /// Returns "1-4 circuit 1" or "winding at bus 2 of 2-3-4 circuit 1" for messages.

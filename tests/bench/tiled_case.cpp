@@ -3,7 +3,9 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "sim/grid/unit.hpp"
 #include "tests/bench/tiled_grid.hpp"
+#include "tests/sim/formats/write_raw.hpp"
 
 int main(int argc, char** argv) {
   using namespace swingbank;
@@ -17,7 +19,14 @@ int main(int argc, char** argv) {
     sim::formats::write_raw(net, argv[4]);
     const sim::grid::Grid grid = sim::grid::make_grid(
         std::move(net), sim::tiled_dynamics(argv[2], tiles, true), argv[2], sim::Conventions::psse());
-    sim::grid::write_dyr(grid, argv[5]);
+    std::string dyr;
+    Problems problems;
+    for (const sim::plant::Plant& plant : grid.plants)
+      dyr += sim::grid::unit_dyr(plant, grid.network.buses[static_cast<std::size_t>(plant.bus)].number,
+                                 grid.network.generators[static_cast<std::size_t>(plant.generator)].id,
+                                 plant.name, problems);
+    problems.raise();
+    write_text(argv[5], dyr);
     std::printf("%zu buses, %zu machines\n", grid.network.buses.size(), grid.plants.size());
   } catch (const InputError& e) {
     std::fprintf(stderr, "%s\n", e.what());

@@ -13,6 +13,7 @@
 #include "sim/formats/psse.hpp"
 #include "sim/network/network.hpp"
 #include "sim/network/powerflow.hpp"
+#include "tests/sim/formats/write_raw.hpp"
 
 namespace swingbank::fuzz {
 
@@ -51,15 +52,16 @@ inline void check_power_flow(const sim::network::Network& network) {
   for (const Complex& s : flow.generation) require(finite(s), "generation is finite");
 }
 
-/// Checks that a written network is read back unchanged.
+/// Checks that a written network is read back unchanged, unless a .raw has no field for one of its values.
 inline void check_round_trip(const sim::network::Network& network) {
+  for (const sim::network::Branch& b : network.branches)
+    if (b.transformer ? b.b != 0.0 || b.shunt_to != Complex{} : b.tap != 1.0 || b.shift != 0.0) return;
   for (const int version : {33, 35}) {
-    std::string once;
-    if (!accepted([&] { once = sim::formats::raw_text(network, version, "written"); })) return;
+    const std::string once = sim::formats::raw_text(network, version);
     sim::network::Network again;
     require(accepted([&] { again = sim::formats::parse_raw(once, "written"); }),
             "what was written can be read");
-    require(sim::formats::raw_text(again, version, "again") == once, "a second round trip changes nothing");
+    require(sim::formats::raw_text(again, version) == once, "a second round trip changes nothing");
   }
 }
 

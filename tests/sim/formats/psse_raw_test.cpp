@@ -5,6 +5,8 @@
 
 #include "sim/network/powerflow.hpp"
 #include "tests/sim/formats/raw_case.hpp"
+#include "tests/sim/formats/write_raw.hpp"
+#include "tests/sim/network/branch_index.hpp"
 
 namespace swingbank::sim::formats {
 namespace {
@@ -43,8 +45,8 @@ TEST(PsseRaw, ReadsBusesLoadsShuntsGeneratorsAndLines) {
   EXPECT_EQ(b.shunt_from, Complex(0.001, 0.002));
   EXPECT_EQ(b.shunt_to, Complex(0.003, 0.004));
   EXPECT_FALSE(b.in_service);
-  EXPECT_EQ(n.branch_index(102, 101, "2"), 2);
-  EXPECT_EQ(n.branch_index(102, 101, "1"), -1);
+  EXPECT_EQ(network::branch_index(n, 102, 101, "2"), 2);
+  EXPECT_EQ(network::branch_index(n, 102, 101, "1"), -1);
   EXPECT_EQ(n.bus_index(103), 2);
   EXPECT_EQ(n.bus_index(7), -1);
 }
@@ -191,7 +193,7 @@ TEST_P(PsseRawDevices, PowerFollowsFromTheFileVoltages) {
   }
   const Complex drawn = solved.loads[0].power;
   solved.loads.clear();
-  std::string text = raw_text(solved, 33, "solved");
+  std::string text = raw_text(solved, 33);
   const std::string end = "0 / end of " + std::string(GetParam().section) + " data\n";
   ASSERT_NE(text.find(end), std::string::npos);
   text.insert(text.find(end), GetParam().record);

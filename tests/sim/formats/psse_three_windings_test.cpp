@@ -9,6 +9,7 @@
 #include "sim/network/admittance.hpp"
 #include "tests/sim/formats/flatten.hpp"
 #include "tests/sim/formats/raw_case.hpp"
+#include "tests/sim/formats/write_raw.hpp"
 
 namespace swingbank::sim::formats {
 namespace {
@@ -60,8 +61,7 @@ TEST_P(PsseThreeWindings, GiveTheSameAdmittance) {
   EXPECT_DOUBLE_EQ(n.buses[3].vm, 0.98);
   // Rounding of admittances of order 20.
   EXPECT_LT((seen(n) - expected()).cwiseAbs().maxCoeff(), 1e-12);
-  for (const int version : {32, 33, 34, 35})
-    expect_same(n, parse_raw(raw_text(n, version, "out.raw"), "out.raw"));
+  for (const int version : {32, 33, 34, 35}) expect_same(n, parse_raw(raw_text(n, version), "out.raw"));
 }
 // Load losses in W: R on the pair's own base times that base.
 INSTANTIATE_TEST_SUITE_P(

@@ -10,6 +10,7 @@
 #include "sim/grid/unit.hpp"
 #include "sim/reference/reference.hpp"
 #include "tests/sim/grid/far_case.hpp"
+#include "tests/sim/network/branch_index.hpp"
 
 namespace swingbank::sim::grid::far_control {
 namespace {
@@ -88,7 +89,7 @@ TEST(FarControl, OpenBranchHasZeroFlow) {
   const Grid two = load_from(doubled, plants(control));
   EXPECT_NEAR(two.plants.at(1).far.value().P, 0.4, 1e-9);
   network::Event event;
-  event.trips.push_back({two.network.branch_index(102, 103, "1"), 1.0, {}});
+  event.trips.push_back({network::branch_index(two.network, 102, 103, "1"), 1.0, {}});
   // The control restores the branch flow until the plant is at its limit.
   reference::ReferenceOptions options;
   options.t_end = 20.0;

@@ -103,21 +103,6 @@ TEST(StaticVar, TheOtherFormNamesTheShunt) {
   EXPECT_TRUE(says(other, "models of switched shunts out of service are ignored"));
 }
 
-TEST(StaticVar, ReadsBackToTheLastBit) {
-  for (const char* regulated : {"103", "102"}) {
-    Grid grid = load_from(with_shunt(), kPlants + record(regulated));
-    grid.loads.at(0).block.p[5] /= 3.0;
-    const formats::ScratchFile raw("out.raw"), dyr("out.dyr");
-    formats::write_raw(grid.network, raw.path);
-    write_dyr(grid, dyr.path);
-    const Grid again = load_grid(raw.path, dyr.path, Conventions::psse());
-    ASSERT_EQ(again.loads.size(), 1u);
-    EXPECT_EQ(again.loads[0].block.p, grid.loads[0].block.p);
-    EXPECT_EQ(again.loads[0].regulated, grid.loads[0].regulated);
-    EXPECT_NEAR(std::abs(again.loads[0].consumption - grid.loads[0].consumption), 0.0, 1e-12);
-  }
-}
-
 TEST(StaticVar, ReportsEveryError) {
   const std::string all = formats::sentences_of(
       [] { load_from(with_shunt(), kPlants + record("103") + record("103") + record("999")); });

@@ -6,6 +6,7 @@
 #include "sim/grid/inventory.hpp"
 #include "sim/network/admittance.hpp"
 #include "tests/sim/formats/raw_case.hpp"
+#include "tests/sim/network/branch_index.hpp"
 
 namespace swingbank::sim::grid {
 namespace {
@@ -110,7 +111,8 @@ TEST_F(UnitTest, ATransformerBetweenMachineAndRecordBecomesPartOfThePlant) {
     block.effect->get<double>().transformer.impedance(block.p.data(), r, x, n);
     // The same branch by its admittance matrix: quantities at the machine's side for a voltage and current.
     const network::Network net = formats::read_raw(c.raw);
-    const network::Branch& b = net.branches[static_cast<std::size_t>(net.branch_index(102, 103, "1"))];
+    const network::Branch& b =
+        net.branches[static_cast<std::size_t>(network::branch_index(net, 102, 103, "1"))];
     const Complex y = 1.0 / Complex(b.r, b.x), tap = std::polar(b.tap, b.shift);
     const Complex v_grid(1.01, 0.1), i_machine(0.7, -0.2);  // [pu on 100 MVA]
     Complex v_machine;

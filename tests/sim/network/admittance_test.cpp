@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/sim/formats/raw_case.hpp"
+#include "tests/sim/network/branch_index.hpp"
 
 namespace swingbank::sim::network {
 namespace {
@@ -81,7 +82,7 @@ class Reduction : public ::testing::Test {
 constexpr double kRounding = 1e-10;  // entries of order 1e2, a solve of 39 equations
 
 TEST_F(Reduction, EqualsTheFullSolution) {
-  const int line = network.branch_index(16, 17, "1");
+  const int line = branch_index(network, 16, 17, "1");
   for (const Topology& t :
        {Topology{}, Topology{{{network.bus_index(16), {}}}, {}},
         Topology{{{network.bus_index(16), {0.01, 0.02}}, {network.bus_index(4), {}}}, {line}}}) {
@@ -134,7 +135,7 @@ TEST_F(Reduction, IslandsWithoutGeneratorAreGrounded) {
   // Buses 7 and 8 are connected by 6-7, 5-8 and 8-9; bus 9 keeps 9-39.
   const std::vector<std::pair<int, int>> lines = {{6, 7}, {5, 8}, {8, 9}};
   Topology t;
-  for (const auto& [a, b] : lines) t.open.push_back(network.branch_index(a, b, "1"));
+  for (const auto& [a, b] : lines) t.open.push_back(branch_index(network, a, b, "1"));
   std::ranges::sort(t.open);
   for (const int i : t.open) ASSERT_GE(i, 0);
   EXPECT_THAT(dead_buses(network, t), ElementsAre(network.bus_index(7), network.bus_index(8)));
@@ -148,7 +149,7 @@ TEST_F(Reduction, IslandsWithoutGeneratorAreGrounded) {
 }
 
 TEST_F(Reduction, IslandWithAGeneratorContinues) {
-  const Topology t{{}, {network.branch_index(2, 30, "1")}};  // generator 30 loses its only branch
+  const Topology t{{}, {branch_index(network, 2, 30, "1")}};  // generator 30 loses its only branch
   const auto reduced = reduce(network, flow, t, kept);
   EXPECT_LT(reduced.y.row(0).cwiseAbs().maxCoeff(), 1e-12);
 }

@@ -8,6 +8,7 @@
 
 #include "sim/grid/load_choice.hpp"
 #include "tests/sim/effects/control_bench.hpp"
+#include "tests/sim/network/branch_index.hpp"
 #include "tests/sim/reference/psse_folder.hpp"
 #include "tests/sim/reference/psse_stepper.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -34,7 +35,7 @@ grid::Grid grid_with(const std::filesystem::path& raw, const std::string& dynami
 }
 network::Event trip(const grid::Grid& grid, int from, int to) {
   network::Event event;
-  event.trips.push_back({grid.network.branch_index(from, to, "1"), kSwitching, {}});
+  event.trips.push_back({network::branch_index(grid.network, from, to, "1"), kSwitching, {}});
   return event;
 }
 std::size_t plant_of(const grid::Grid& grid, const std::string& name) {

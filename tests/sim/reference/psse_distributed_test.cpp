@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "sim/grid/load_choice.hpp"
+#include "tests/sim/network/branch_index.hpp"
 #include "tests/sim/reference/psse_folder.hpp"
 #include "tests/sim/reference/psse_stepper.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -57,7 +58,7 @@ TEST_P(PsseRecordsDistributed, VoltageAndAngle) {
   const auto record =
       test::read_table(dera_folder() / ("dera_freqflag" + std::to_string(GetParam()) + ".csv"), false);
   network::Event event;
-  event.trips.push_back({grid.network.branch_index(101, 102, "1"), kTrip, {}});
+  event.trips.push_back({network::branch_index(grid.network, 101, 102, "1"), kTrip, {}});
   ReferenceOptions options;
   options.t_end = kEndOfRecord;
   options.rate = 1.0 / kStepOfRecord;

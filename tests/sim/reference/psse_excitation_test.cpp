@@ -3,6 +3,7 @@
 // modelling.
 #include <numbers>
 
+#include "tests/sim/network/branch_index.hpp"
 #include "tests/sim/reference/psse_folder.hpp"
 #include "tests/sim/reference/psse_stepper.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -21,13 +22,13 @@ grid::Grid grid_of(const std::string& name) {
 std::size_t plant_102(const grid::Grid& grid) { return grid.plants[0].name == "102" ? 0 : 1; }
 network::Event line_trip(const grid::Grid& grid) {
   network::Event event;
-  event.trips.push_back({grid.network.branch_index(101, 102, "1"), 1.0, {}});
+  event.trips.push_back({network::branch_index(grid.network, 101, 102, "1"), 1.0, {}});
   return event;
 }
 
 /// Power into line a-b at a [MW, Mvar]; `v`: bus voltages from the stepper.
 Complex line_power(const network::Network& net, const double* v, int a, int b) {
-  const auto& line = net.branches[static_cast<std::size_t>(net.branch_index(a, b, "1"))];
+  const auto& line = net.branches[static_cast<std::size_t>(network::branch_index(net, a, b, "1"))];
   const auto at = [&](int bus) {
     const auto i = static_cast<std::size_t>(net.bus_index(bus));
     return Complex(v[2 * i], v[2 * i + 1]);
@@ -112,7 +113,7 @@ TEST(PsseRecords, Exst1WithGensalAndHygov) {
       grid::load_grid(folder / "TVC_System_32.raw", folder / "TVC_System.dyr", Conventions::psse());
   const auto record = test::read_table(folder / "results_PSSe.csv", false);
   network::Event event;
-  event.trips.push_back({grid.network.branch_index(1, 4, "1"), 1.0, {}});
+  event.trips.push_back({network::branch_index(grid.network, 1, 4, "1"), 1.0, {}});
   Rows ours;
   test::step_as_psse(
       grid, event, grid.plants[0].name == "2" ? 0 : 1, 0.005, 20.0,

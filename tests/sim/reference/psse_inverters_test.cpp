@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "tests/sim/network/branch_index.hpp"
 #include "tests/sim/reference/psse_folder.hpp"
 #include "tests/sim/reference/psse_stepper.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -30,7 +31,7 @@ grid::Grid converter_grid_of(const std::string& dyr) {
 }
 network::Event trip(const grid::Grid& grid, int from, int to) {
   network::Event event;
-  event.trips.push_back({grid.network.branch_index(from, to, "1"), kSwitching, {}});
+  event.trips.push_back({network::branch_index(grid.network, from, to, "1"), kSwitching, {}});
   return event;
 }
 std::size_t plant_at(const grid::Grid& grid, const std::string& name) {

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include "tests/sim/network/branch_index.hpp"
 #include "tests/sim/reference/psse_folder.hpp"
 #include "tests/sim/reference/psse_stepper.hpp"
 #include "tests/sim/reference/reference_support.hpp"
@@ -31,7 +32,7 @@ struct Case {
 Case case_of(const Record& record, Conventions conventions) {
   const auto folder = test::record_folder(record.folder);
   Case c{grid::load_grid(folder / record.raw, folder / record.dyr, conventions), {}, 0};
-  c.event.trips.push_back({c.grid.network.branch_index(101, 102, "1"), 1.0, {}});
+  c.event.trips.push_back({network::branch_index(c.grid.network, 101, 102, "1"), 1.0, {}});
   c.machine = c.grid.plants[0].name == "102" ? 0 : 1;
   plant::Block& machine = c.grid.plants[c.machine].machine;
   if (record.damping)

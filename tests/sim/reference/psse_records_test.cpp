@@ -3,6 +3,7 @@
 // `.ci/run --without-psse` leaves the suite out.
 #include <numbers>
 
+#include "tests/sim/network/branch_index.hpp"
 #include "tests/sim/reference/psse_folder.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
@@ -16,7 +17,7 @@ double largest_angle_error(const std::string& dyr, const std::string& record, Co
   const grid::Grid grid = grid::load_grid(folder / "ThreeBusMulti.raw", folder / dyr, conventions);
   const test::Table table = test::read_table(folder / record, false);
   network::Event event;
-  event.trips.push_back({grid.network.branch_index(101, 102, "1"), 1.0, {}});
+  event.trips.push_back({network::branch_index(grid.network, 101, 102, "1"), 1.0, {}});
   ReferenceOptions options;
   options.t_end = 20.0;
   options.rate = 200.0;

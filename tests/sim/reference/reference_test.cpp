@@ -6,6 +6,7 @@
 #include <random>
 
 #include "sim/reference/detail/system.hpp"
+#include "tests/sim/network/branch_index.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
 namespace swingbank::sim::reference {
@@ -24,7 +25,7 @@ network::Event fault(const grid::Grid& grid, int bus, double on, double off, Com
 network::Event trip(const grid::Grid& grid, int from, int to, const std::string& circuit, double open,
                     std::optional<double> close = {}) {
   network::Event event;
-  event.trips.push_back({grid.network.branch_index(from, to, circuit), open, close});
+  event.trips.push_back({network::branch_index(grid.network, from, to, circuit), open, close});
   return event;
 }
 

@@ -1,34 +1,16 @@
-// Writer of .raw files, versions 32 to 35, with an exact round trip of the written values.
-#include <array>
+#pragma once
+// Writer of .raw files, versions 32 to 35. Reading restores all values bit by bit, except `origin`, the
+// remarks, Bus::star_of, the steps of switched shunts, and values that a .raw has no field for: a tap or
+// phase shift of a line, and charging or a far-end shunt of a transformer.
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "base/durable.hpp"
-#include "sim/formats/psse.hpp"
 #include "sim/formats/psse_text.hpp"
+#include "sim/network/network.hpp"
 
 namespace swingbank::sim::formats {
-namespace {
-
-using psse::quote;
-using psse::shortest;
-
-/// Returns the angle in degrees that the reader converts back to exactly `radians`.
-std::string degrees(double radians) { return shortest(radians, psse::kDegrees); }
-
-/// Empty sections after the transformers, in file order.
-constexpr std::array kEmpty = {"area",
-                               "two-terminal dc",
-                               "vsc dc line",
-                               "impedance correction",
-                               "multi-terminal dc",
-                               "multi-section line",
-                               "zone",
-                               "inter-area transfer",
-                               "owner",
-                               "facts device",
-                               "switched shunt",
-                               "gne",
-                               "induction machine",
-                               "substation"};
 
 class RawWriter {
  public:
@@ -41,7 +23,10 @@ class RawWriter {
     generators();
     lines();
     transformers();
-    for (const std::string name : kEmpty)
+    for (const std::string name :
+         {"area", "two-terminal dc", "vsc dc line", "impedance correction", "multi-terminal dc",
+          "multi-section line", "zone", "inter-area transfer", "owner", "facts device", "switched shunt",
+          "gne", "induction machine", "substation"})
       if ((name != "induction machine" || version_ >= 33) && (name != "substation" || version_ >= 34))
         end(name);
     out_ += "Q\n";
@@ -50,6 +35,10 @@ class RawWriter {
 
  private:
   using Row = std::vector<std::string>;
+  static std::string shortest(double value, long double scale = 1.0L) { return psse::shortest(value, scale); }
+  static std::string quote(const std::string& text) { return psse::quote(text); }
+  /// Returns the angle in degrees that the reader converts back to exactly `radians`.
+  static std::string degrees(double radians) { return shortest(radians, psse::kDegrees); }
   void row(const Row& fields) {
     bool first = true;
     for (const auto& f : fields) {
@@ -173,34 +162,11 @@ class RawWriter {
   std::string out_;
 };
 
-void check(const network::Network& n, const std::string& file, int version) {
-  Problems problems;
-  if (version < 32 || version > 35)
-    problems.add("version " + std::to_string(version) + " of the .raw format", file,
-                 "versions 32 to 35 are written", "choose one of these");
-  for (const network::Branch& b : n.branches) {
-    const std::string where =
-        file + ", branch " + std::to_string(n.buses[static_cast<std::size_t>(b.from)].number) + "-" +
-        std::to_string(n.buses[static_cast<std::size_t>(b.to)].number) + " circuit " + b.circuit;
-    if (!b.transformer && (b.tap != 1.0 || b.shift != 0.0))
-      problems.add("a tap or phase shift on a line", where,
-                   "the branch section of a .raw has no field for it", "mark the branch as a transformer");
-    if (b.transformer && (b.b != 0.0 || b.shunt_to != Complex{}))
-      problems.add("charging or a far-end shunt on a transformer", where,
-                   "the transformer section of a .raw has no field for it",
-                   "enter it as a fixed shunt at the bus");
-  }
-  problems.raise();
-}
-
-}  // namespace
-
-std::string raw_text(const network::Network& network, int version, const std::string& name) {
-  check(network, name, version);
+inline std::string raw_text(const network::Network& network, int version) {
   return RawWriter(network, version).text();
 }
-void write_raw(const network::Network& network, const std::filesystem::path& file, int version) {
-  write_text(file, raw_text(network, version, file.string()));
+inline void write_raw(const network::Network& network, const std::filesystem::path& file, int version = 33) {
+  write_text(file, raw_text(network, version));
 }
 
 }  // namespace swingbank::sim::formats
