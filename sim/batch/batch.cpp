@@ -91,17 +91,9 @@ std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& jo
 }
 
 Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_unique<Impl>()) {
-  if (options.lanes == 0) options.lanes = options.sensitivities ? kDualLanes : widest();
+  if (options.lanes == 0) options.lanes = widest();
   impl_->options = options;
   refuse_far_regulation(grid);
-  if (options.sensitivities) {
-    if (options.lanes != kDualLanes)
-      throw InputError({fmt::format("{} lanes with sensitivities", options.lanes), "option lanes",
-                        fmt::format("sensitivities are compiled for {} lanes on this processor", kDualLanes),
-                        fmt::format("choose {}, or 0", kDualLanes)});
-    impl_->engine = std::make_unique<detail::EngineOf<DualPack>>(grid, options);
-    return;
-  }
   switch (options.lanes) {
     case 1:
       impl_->engine = std::make_unique<detail::EngineOf<double>>(grid, options);

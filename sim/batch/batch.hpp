@@ -25,15 +25,6 @@ struct BatchOptions {
   /// Limit of synchronism: a run ends when the angle between two rotors of one island has changed by more
   /// than this.
   double lose_at = constants::pi;  ///< [rad]
-  bool sensitivities = false;      ///< compute derivatives with respect to Job::seeds, in kDualLanes lanes
-};
-
-/// A sensitivity parameter. The derivative is taken with respect to the parameter divided by `scale`. The
-/// step size control can then apply one tolerance to value and sensitivity.
-struct Seed {
-  int plant;                     ///< index of the plant in the grid
-  plant::ParameterId parameter;  ///< parameter of the machine, the transformer or a control
-  double scale;                  ///< reference change of the parameter [its unit]
 };
 
 /// One simulation: its event and the plants' parameters. Unlisted plants have the parameters of the grid.
@@ -51,7 +42,6 @@ struct Job {
     friend bool operator==(const BlockValues&, const BlockValues&) = default;
   };
   std::vector<BlockValues> parameters = {};  ///< blocks whose values differ from the grid's
-  std::vector<Seed> seeds = {};  ///< at most kSensitivities; used only with BatchOptions::sensitivities
 };
 
 /// Returns the plants whose parameters a job changes, by index. `grid`: the batch's grid.

@@ -1,6 +1,6 @@
 #pragma once
 // Dual<T, N>: a value and its derivatives with respect to N parameters (forward-mode automatic
-// differentiation). T is double or a Pack.
+// differentiation). T is double.
 #include <array>
 #include <cmath>
 

@@ -14,13 +14,10 @@ constexpr int kSensitivities = 8;
 using D8 = Dual<double, kSensitivities>;  ///< double with sensitivities
 using P4 = Pack<4>;                       ///< four doubles
 using P8 = Pack<8>;                       ///< eight doubles
-/// Number of lanes of a SIMD batch with sensitivities. More lanes would exceed the L1 cache.
-constexpr int kDualLanes = kRegisterBytes == 64 ? 8 : 4;
-using DualPack = Dual<Pack<kDualLanes>, kSensitivities>;  ///< SIMD batch with sensitivities
 
 /// Scalar types for which all equations of an effect are instantiated. New types are added only here.
 /// FloatPack is separate (float_ops.hpp).
-using Scalars = std::tuple<double, P4, P8, D8, DualPack>;
+using Scalars = std::tuple<double, P4, P8, D8>;
 
 /// Computes sine and cosine of a [rad].
 inline void sincos(double a, double& s, double& c) {

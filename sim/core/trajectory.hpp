@@ -44,11 +44,8 @@ struct Trajectory {
   std::vector<int> plants;        ///< indices of the recorded plants in the grid
   std::vector<Channel> channels;  ///< recorded channels, the same for each plant
   std::vector<double, CacheAligned<double>> values;  ///< rows [plant][channel], see at() and packed()
-  int sensitivity_parameters = 0;                    ///< number of sensitivity parameters
-  /// Sensitivities: one block per parameter, with the layout of `values`; see sensitivity().
-  std::vector<double, CacheAligned<double>> sensitivities;
-  Outcome outcome = Outcome::stable;  ///< how the simulation ended
-  double stopped_at = 0.0;            ///< end of the simulation [s]: t_end, or the time of an early end
+  Outcome outcome = Outcome::stable;                 ///< how the simulation ended
+  double stopped_at = 0.0;      ///< end of the simulation [s]: t_end, or the time of an early end
   double largest_spread = 0.0;  ///< maximum change of the angle between two rotors since the start [rad]
 
   /// Returns the number of rows, plants times channels.
@@ -58,18 +55,6 @@ struct Trajectory {
     constexpr int kDoublesPerLine = 8;
     stride = whole_lines ? (samples + kDoublesPerLine - 1) / kDoublesPerLine * kDoublesPerLine : samples;
     values.resize(static_cast<std::size_t>(rows()) * static_cast<std::size_t>(stride));
-    sensitivities.resize(values.size() * static_cast<std::size_t>(sensitivity_parameters));
-  }
-  /// Returns the samples of the sensitivity of at(plant, channel) to parameter number `parameter`.
-  [[nodiscard]] double* sensitivity(int parameter, int plant, int channel) {
-    return sensitivities.data() +
-           static_cast<std::ptrdiff_t>(parameter * rows() + plant * static_cast<int>(channels.size()) +
-                                       channel) *
-               stride;
-  }
-  /// The same, read only.
-  [[nodiscard]] const double* sensitivity(int parameter, int plant, int channel) const {
-    return const_cast<Trajectory*>(this)->sensitivity(parameter, plant, channel);
   }
   /// Returns row i = plant * channels + channel: `samples` values in the channel's unit.
   [[nodiscard]] double* row(int i) { return values.data() + static_cast<std::ptrdiff_t>(i) * stride; }

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Scalars, effects and SIMD kernels under the address and undefined-behaviour sanitizers, built once for each vector
-# width: two doubles (x86-64-v2), four (v3, AVX2) and eight (v4, AVX-512). Each build runs the kernels of 1, 4 and 8 lanes
-# and that of sensitivities.
+# width: two doubles (x86-64-v2), four (v3, AVX2) and eight (v4, AVX-512). Each build runs the kernels of 1, 4 and 8 lanes.
 #   bash tests/sim/sanitized.bash [LEVEL...]
 #     LEVEL   default all that this processor has
 # Exit codes: 0 nothing found, 1 something found or not built.

@@ -30,7 +30,7 @@ class Swingbank(CMakePackage):
     depends_on("eigen@3.4:3")
     depends_on("boost@1.74: +math")
     depends_on("ceres-solver@2.1:")
-    depends_on("sundials@6.4:6 +klu +ida +cvodes")
+    depends_on("sundials@6.4:6 +klu +ida")
     depends_on("suite-sparse")
     depends_on("spdlog +fmt_external")
     depends_on("fmt")

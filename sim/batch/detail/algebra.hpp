@@ -172,8 +172,7 @@ void BatchKernel<T>::algebra_jacobian(const Constants& k, const T* x, T* a) {
 /// Computes one Newton step into algebra_[0 .. 2K), with the stored factors of each lane, or with new ones in
 /// the lanes of `anew`. Returns the largest component of the step.
 template <class T>
-typename BatchKernel<T>::Flat BatchKernel<T>::newton_step(Constants& k, const T* x, const T* steady,
-                                                          unsigned anew) {
+T BatchKernel<T>::newton_step(Constants& k, const T* x, const T* steady, unsigned anew) {
   const std::size_t size = 2 * nonlinear_.size();
   T* f = algebra_.data();
   algebra_rest(k, x, steady);
@@ -189,20 +188,18 @@ typename BatchKernel<T>::Flat BatchKernel<T>::newton_step(Constants& k, const T*
     k.factored |= anew;
   }
   solve_factored(k.factors.data(), f, size);
-  Flat largest(0.0);
-  for (std::size_t i = 0; i < size; ++i) largest = maximum(absolute(Traits::value(f[i])), largest);
+  T largest(0.0);
+  for (std::size_t i = 0; i < size; ++i) largest = maximum(absolute(f[i]), largest);
   return largest;
 }
 
 /// Convergence monitor of one lane's Newton iteration.
 struct LaneSearch {
   double last = 0.0;  ///< size of the previous step [pu]; 0: none
-  int calm = 0;       ///< number of short steps with new factors
 
   /// Returns true if the voltages have converged after a step of size `step` [pu]. `anew`: the step used
-  /// factors that were computed at its starting point. `more`: number of additional steps after convergence.
-  /// Sets `slow` if the factors need renewal.
-  bool found(double step, bool anew, int more, bool& slow) {
+  /// factors that were computed at its starting point. Sets `slow` if the factors need renewal.
+  bool found(double step, bool anew, bool& slow) {
     constexpr double near = 1e-7;     // [pu]; after such a short step with new factors, the error is 1e-13
     constexpr double left = 1e-13;    // tolerance of the voltages [pu]
     constexpr double slowest = 0.02;  // largest convergence rate accepted with old factors
@@ -210,7 +207,7 @@ struct LaneSearch {
     const double rate = known ? step / last : 1.0;
     last = step;
     slow = false;
-    if (anew) return step < near && calm++ >= more;
+    if (anew) return step < near;
     if (step * std::min(rate, 1.0) < left) return true;
     slow = known && !(rate < slowest) && step > near;
     return false;
@@ -224,28 +221,25 @@ template <class T>
 unsigned BatchKernel<T>::search_voltages(Constants& k, const T* x, unsigned open) {
   constexpr int limit = 40, patience = 8;
   constexpr double longest = 0.3;  // [pu], because a constant-power load may cause too large first steps
-  // The difference quotients still affect the derivatives after the last Newton step. Dual numbers therefore
-  // take two more steps and always use new factors.
-  constexpr int more = Traits::sensitivities > 0 ? 2 : 0;
   constexpr unsigned all = (1U << kLanes) - 1U;
   const std::size_t count = nonlinear_.size();
   auto seeking = Traits::mask(open);
   std::array<LaneSearch, kLanes> search{};
   for (int step = 0; step < limit && open != 0; ++step) {
-    const unsigned anew = open & (Traits::sensitivities > 0 || step >= patience ? all : ~k.factored);
-    const Flat largest = newton_step(k, x, steady_.data(), anew);
-    const T scale = Traits::constant(Flat(longest) / maximum(Flat(longest), largest));
+    const unsigned anew = open & (step >= patience ? all : ~k.factored);
+    const T largest = newton_step(k, x, steady_.data(), anew);
+    const T scale = T(longest) / maximum(T(longest), largest);
     for (std::size_t i = 0; i < count; ++i) {
       k.vr[i] = select(seeking, k.vr[i] - scale * algebra_[2 * i], k.vr[i]);
       k.vi[i] = select(seeking, k.vi[i] - scale * algebra_[2 * i + 1], k.vi[i]);
     }
     alignas(64) double size[kLanes];
-    LaneTraits<Flat>::store(largest, size);
+    Traits::store(largest, size);
     for (int l = 0; l < kLanes; ++l) {
       const unsigned bit = 1U << l;
       if ((open & bit) == 0) continue;
       bool slow = false;
-      if (search[static_cast<std::size_t>(l)].found(size[l], (anew & bit) != 0, more, slow)) open &= ~bit;
+      if (search[static_cast<std::size_t>(l)].found(size[l], (anew & bit) != 0, slow)) open &= ~bit;
       if (slow) k.factored &= ~bit;
     }
     seeking = Traits::mask(open);

@@ -33,7 +33,6 @@ class BatchKernel {
 
  private:
   using Traits = LaneTraits<T>;
-  using Flat = typename Traits::Flat;
   using Real = typename Traits::Real;
   /// Whether the states are added with compensated summation, as in single precision.
   static constexpr bool kCarries = std::is_same_v<Real, float>;
@@ -43,7 +42,6 @@ class BatchKernel {
   /// Minimum weight of a state in the kink error, because the record shows this error even if it decays
   /// quickly.
   static constexpr double kKinkWeight = 0.3;
-  static constexpr std::size_t kFlats = 1 + Traits::sensitivities;  ///< number of Flat values in one T
   struct PlantSlice {
     plant::PlantEquations<T> equations;
     int x, c, m;        ///< offsets of states, coefficients and scratch
@@ -55,10 +53,10 @@ class BatchKernel {
   /// Detection of kinks in an exciter with a stabiliser. The stabiliser's output Vs has a kink where it
   /// reaches or leaves its limits. At a limit, successive stages have bitwise equal Vs.
   struct Watch {
-    int first, count;              ///< states of the exciter
-    Flat start{}, last{};          ///< Vs at the start of the step and at the last stage
-    Flat rested{}, rested_next{};  ///< 1 if the last stage left Vs unchanged: previous step, this step
-    Flat same{};                   ///< number of stages with Vs unchanged from the previous stage
+    int first, count;           ///< states of the exciter
+    T start{}, last{};          ///< Vs at the start of the step and at the last stage
+    T rested{}, rested_next{};  ///< 1 if the last stage left Vs unchanged: previous step, this step
+    T same{};                   ///< number of stages with Vs unchanged from the previous stage
   };
 
   struct LoadSlice {
@@ -111,12 +109,12 @@ class BatchKernel {
   const T* ratio(const Constants& k, int source) const;
   void algebra_rest(Constants& k, const T* x, const T* steady);
   void algebra_jacobian(const Constants& k, const T* x, T* a);
-  Flat newton_step(Constants& k, const T* x, const T* steady, unsigned anew);
+  T newton_step(Constants& k, const T* x, const T* steady, unsigned anew);
 
   // recording (record.hpp)
   void record_step(const T& h, unsigned accepted, const double* start, const double* tried);
   void interpolate(const T& h, const double* start, const double* tried);
-  void dense(std::size_t state, const T& h, Flat* rows) const;
+  void dense(std::size_t state, const T& h, T* row) const;
   /// Returns the states of the buffered samples, [pack][state][sample of the pack].
   static Real* waiting(BatchRun& run) { return reinterpret_cast<Real*>(run.waiting.data()); }
   static const Real* waiting(const BatchRun& run) {
@@ -139,16 +137,14 @@ class BatchKernel {
   const Terminals& set_shared(int lane, const network::Topology& topology);
   const InternalMatrix& own_matrix();
   std::optional<LowRank> few_products(int lane, const network::Topology& topology);
-  void matrix_sensitivities(int lane, const InternalMatrix& matrix);
 
   // loading (load.hpp)
   void load(int lane);
   void build_slices();
   void reserve();
-  template <class Value>
-  void load_plant(int lane, std::size_t plant, const plant::OperatingOf<Value>& at);
-  void load_seeded(int lane, const std::map<int, plant::Plant>& changed);
+  void load_plant(int lane, std::size_t plant, const plant::Operating& at);
   void load_consumer(int lane, std::size_t load);
+  void set_source(int lane, const plant::Operating& at, int c, int x, const double* z, std::size_t source);
   void find_moving();
   void find_weights();
   void enter_segment(int lane);
@@ -163,11 +159,11 @@ class BatchKernel {
   void evaluate_fresh();
   template <int Stage>
   void stage(const T& h);
-  Flat scaled_error(const Flat& h) const;
-  Flat kink_error(std::size_t state) const;
-  Flat own_error(std::size_t state) const;
-  Flat has_kink(const Watch& watch) const;
-  Flat leaves_limit(std::size_t state) const;
+  T scaled_error(const T& h) const;
+  T kink_error(std::size_t state) const;
+  T own_error(std::size_t state) const;
+  T has_kink(const Watch& watch) const;
+  T leaves_limit(std::size_t state) const;
   void watch_stage(Watch& watch, const T& vs);
   void commit(unsigned accepted);
   void clamp_states();

@@ -15,18 +15,14 @@ struct LaneTraits;
 
 template <>
 struct LaneTraits<double> {
-  using Flat = double;  ///< value of all lanes, without derivatives
   using Real = double;  ///< type of one lane
-  static constexpr int lanes = 1, sensitivities = 0;
+  static constexpr int lanes = 1;
   static double get(double v, int) { return v; }
   static void set(double& v, int, double a) { v = a; }
   static bool mask(unsigned bits) { return (bits & 1U) != 0; }
   static double load(const double* v) { return *v; }
   static void store(double v, double* to) { *to = v; }
   static void stream(double v, double* to) { *to = v; }
-  static double value(double v) { return v; }
-  static double constant(double v) { return v; }
-  static double magnitude(double v) { return std::fabs(v); }
 };
 #ifdef __AVX__
 /// Writes doubles register by register with non-temporal stores.
@@ -57,7 +53,7 @@ template <class S, int N>
 struct LaneTraits<Packed<S, N>> {
   using Flat = Packed<S, N>;
   using Real = S;
-  static constexpr int lanes = N, sensitivities = 0;
+  static constexpr int lanes = N;
   static double get(const Flat& v, int l) { return v[l]; }
   static void set(Flat& v, int l, double a) { reinterpret_cast<S*>(&v)[l] = static_cast<S>(a); }
   static typename Flat::Mask mask(unsigned bits) { return Flat::mask(bits); }
@@ -83,44 +79,6 @@ struct LaneTraits<Packed<S, N>> {
 #endif
       store(v, to);
   }
-  static Flat value(const Flat& v) { return v; }
-  static Flat constant(const Flat& v) { return v; }
-  static Flat magnitude(const Flat& v) { return absolute(v); }
-};
-/// Dual numbers: a value is stored as 1 + D flats, the value and its derivatives.
-template <int N, int D>
-struct LaneTraits<Dual<Pack<N>, D>> {
-  using T = Dual<Pack<N>, D>;
-  using Flat = Pack<N>;
-  using Of = LaneTraits<Flat>;
-  using Real = double;
-  static constexpr int lanes = N, sensitivities = D;
-  static_assert(sizeof(T) == (1 + D) * sizeof(Flat));
-  static double get(const T& v, int l) { return v.a[l]; }
-  static void set(T& v, int l, double a) {
-    Of::set(v.a, l, a);
-    for (auto& d : v.d) Of::set(d, l, 0.0);
-  }
-  static void set_sensitivity(T& v, int l, int parameter, double a) {
-    Of::set(v.d[static_cast<std::size_t>(parameter)], l, a);
-  }
-  static typename Flat::Mask mask(unsigned bits) { return Of::mask(bits); }
-  static Flat value(const T& v) { return v.a; }
-  static T constant(const Flat& v) {
-    T r(0.0);
-    r.a = v;
-    return r;
-  }
-  /// Returns the largest magnitude of the value and its derivatives. Derivatives are scaled by Seed::scale,
-  /// so that one tolerance applies to all.
-  static Flat magnitude(const T& v) {
-    Flat m = Of::magnitude(v.a);
-    for (const auto& d : v.d) {
-      const Flat e = Of::magnitude(d);
-      m = select(e <= m, m, e);  // this order propagates NaN
-    }
-    return m;
-  }
 };
 
 inline double maximum(double a, double b) { return a > b ? a : b; }
@@ -135,21 +93,5 @@ inline Packed<S, N> minimum(Packed<S, N> a, Packed<S, N> b) {
   return select(a < b, a, b);
 }
 inline double round_nearest(double a) { return std::nearbyint(a); }
-template <class T, int D>
-Dual<T, D> maximum(const Dual<T, D>& a, const Dual<T, D>& b) {
-  return select(a > b, a, b);
-}
-template <class T, int D>
-Dual<T, D> minimum(const Dual<T, D>& a, const Dual<T, D>& b) {
-  return select(a < b, a, b);
-}
-template <class T, int D>
-Dual<T, D> absolute(const Dual<T, D>& a) {
-  return maximum(a, -a);
-}
-template <class T, int D>
-Dual<T, D> round_nearest(const Dual<T, D>& a) {
-  return chain(a, round_nearest(a.a), T(0.0));
-}
 
 }  // namespace swingbank::sim::batch

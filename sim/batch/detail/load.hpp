@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "sim/batch/detail/batch_kernel.hpp"
 #include "sim/network/connectivity.hpp"
@@ -127,37 +126,32 @@ void BatchKernel<T>::reserve() {
 }
 
 template <class T>
-template <class Value>
-void BatchKernel<T>::load_plant(int lane, std::size_t plant, const plant::OperatingOf<Value>& at) {
+void BatchKernel<T>::set_source(int lane, const plant::Operating& at, int c, int x, const double* z,
+                                std::size_t source) {
+  for (std::size_t i = 0; i < at.c.size(); ++i)
+    Traits::set(per_lane_.c[static_cast<std::size_t>(c) + i], lane, at.c[i]);
+  for (std::size_t i = 0; i < at.x.size(); ++i)
+    Traits::set(y_[static_cast<std::size_t>(x) + i], lane, at.x[i]);
+  lane_r_[static_cast<std::size_t>(lane)][source] = z[0];
+  lane_x_[static_cast<std::size_t>(lane)][source] = z[1];
+}
+
+template <class T>
+void BatchKernel<T>::load_plant(int lane, std::size_t plant, const plant::Operating& at) {
   const PlantSlice& p = plants_[plant];
-  const auto put = [lane](T& to, const Value& from) {
-    Traits::set(to, lane, value_of(from));
-    if constexpr (Traits::sensitivities > 0 && !std::is_same_v<Value, double>)
-      for (int d = 0; d < Traits::sensitivities; ++d)
-        Traits::set_sensitivity(to, lane, d, from.d[static_cast<std::size_t>(d)]);
-  };
-  for (std::size_t i = 0; i < at.c.size(); ++i) put(per_lane_.c[static_cast<std::size_t>(p.c) + i], at.c[i]);
-  for (std::size_t i = 0; i < at.x.size(); ++i) put(y_[static_cast<std::size_t>(p.x) + i], at.x[i]);
-  if (plants_[plant].rotor) Traits::set(rest_[plant], lane, value_of(at.x[0]));
-  put(per_lane_.efd[plant], at.Efd);
-  put(per_lane_.tm[plant], at.Tm);
-  const Value* z = at.c.data() + grid_.plants[plant].machine.effect->coefficients + plant::joint_r;
-  lane_r_[static_cast<std::size_t>(lane)][plant] = value_of(z[0]);
-  lane_x_[static_cast<std::size_t>(lane)][plant] = value_of(z[1]);
+  set_source(lane, at, p.c, p.x,
+             at.c.data() + grid_.plants[plant].machine.effect->coefficients + plant::joint_r, plant);
+  if (p.rotor) Traits::set(rest_[plant], lane, at.x[0]);
+  Traits::set(per_lane_.efd[plant], lane, at.Efd);
+  Traits::set(per_lane_.tm[plant], lane, at.Tm);
 }
 
 template <class T>
 void BatchKernel<T>::load_consumer(int lane, std::size_t load) {
   const LoadSlice& l = loads_[load];
   const plant::Operating& at = state_[static_cast<std::size_t>(lane)]->loads[load];
-  for (std::size_t i = 0; i < at.c.size(); ++i)
-    Traits::set(per_lane_.c[static_cast<std::size_t>(l.c) + i], lane, at.c[i]);
-  for (std::size_t i = 0; i < at.x.size(); ++i)
-    Traits::set(y_[static_cast<std::size_t>(l.x) + i], lane, at.x[i]);
-  const double* z = at.c.data() + grid_.loads[load].block.effect->coefficients;
-  const std::size_t source = plants_.size() + load;
-  lane_r_[static_cast<std::size_t>(lane)][source] = z[plant::load_r];
-  lane_x_[static_cast<std::size_t>(lane)][source] = z[plant::load_x];
+  set_source(lane, at, l.c, l.x, at.c.data() + grid_.loads[load].block.effect->coefficients + plant::load_r,
+             plants_.size() + load);
 }
 
 /// Selects the operating point of a lane's job. It is reused, because consecutive jobs mostly have the same
@@ -186,7 +180,6 @@ void BatchKernel<T>::load(int lane) {
   const auto changed = changed_plants(grid_, run.job);
   for (const auto& [index, plant] : changed)
     load_plant(lane, static_cast<std::size_t>(index), state.bring(plant));
-  if constexpr (Traits::sensitivities > 0) load_seeded(lane, changed);
   for (std::size_t i = 0; i < nonlinear_.size(); ++i) {
     const auto source = static_cast<std::size_t>(nonlinear_[i]);
     const auto& at = source < plants_.size() ? state.plants[source] : state.loads[source - plants_.size()];
@@ -207,7 +200,7 @@ void BatchKernel<T>::find_moving() {
   const auto zero = [this](int coefficient) {
     if (coefficient < 0) return true;
     const Real* v = reinterpret_cast<const Real*>(&per_lane_.c[static_cast<std::size_t>(coefficient)]);
-    return std::all_of(v, v + kFlats * kLanes, [](Real a) { return a == 0; });
+    return std::all_of(v, v + kLanes, [](Real a) { return a == 0; });
   };
   std::vector<char> still(y_.size());
   for (const Resting& r : resting_)
@@ -225,39 +218,8 @@ void BatchKernel<T>::find_moving() {
 template <class T>
 void BatchKernel<T>::find_weights() {
   weighs_ = std::ranges::any_of(weighed_, [this](const Weighed& w) {
-    return any_positive(Traits::value(per_lane_.c[static_cast<std::size_t>(w.coefficient)]) - Flat(1.0));
+    return any_positive(per_lane_.c[static_cast<std::size_t>(w.coefficient)] - T(1.0));
   });
-}
-
-/// Loads plants with sensitivity parameters again, with the derivatives of their operating point.
-template <class T>
-void BatchKernel<T>::load_seeded(int lane, const std::map<int, plant::Plant>& changed) {
-  const auto& seeds = lanes_[static_cast<std::size_t>(lane)].job.seeds;
-  if (seeds.size() > static_cast<std::size_t>(Traits::sensitivities))
-    throw InputError({fmt::format("{} seeds", seeds.size()), "job",
-                      fmt::format("a lane carries {} sensitivities", Traits::sensitivities),
-                      "split the job"});
-  const grid::Grid& grid = state_[static_cast<std::size_t>(lane)]->grid;
-  std::set<int> seeded;
-  for (const Seed& seed : seeds) seeded.insert(seed.plant);
-  for (const int index : seeded) {
-    const auto other = changed.find(index);
-    const plant::Plant& plant =
-        other == changed.end() ? grid.plants[static_cast<std::size_t>(index)] : other->second;
-    std::vector<std::vector<D8>> parameters;
-    for (const auto& values : plant::block_parameters(plant))
-      parameters.emplace_back(values.begin(), values.end());
-    for (std::size_t d = 0; d < seeds.size(); ++d) {
-      const auto [block, parameter] = seeds[d].parameter;
-      if (seeds[d].plant == index)
-        parameters[static_cast<std::size_t>(block)][static_cast<std::size_t>(parameter)].d[d] =
-            seeds[d].scale;
-    }
-    load_plant(lane, static_cast<std::size_t>(index),
-               plant::operating_point_of<D8>(plant, parameters,
-                                             grid.flow.voltage[static_cast<std::size_t>(plant.bus)],
-                                             grid.network.base_mva, grid.conventions));
-  }
 }
 
 /// Returns the last time [s] at which effects are evaluated before a discontinuity at `switching_time`. It is
@@ -332,8 +294,7 @@ void BatchKernel<T>::fill_waiting(int lane) {
   Real* to = waiting(lanes_[static_cast<std::size_t>(lane)]);
   const Real* from = reinterpret_cast<const Real*>(y_.data()) + lane;
   for (int pack = 0; pack < kBufferSamples / kLanes; ++pack)
-    for (std::size_t i = 0; i < y_.size() * kFlats; ++i, to += kLanes)
-      std::fill(to, to + kLanes, from[i * kLanes]);
+    for (std::size_t i = 0; i < y_.size(); ++i, to += kLanes) std::fill(to, to + kLanes, from[i * kLanes]);
 }
 
 /// Returns the number of samples at or before t [s].
@@ -388,12 +349,11 @@ void BatchKernel<T>::begin_record(BatchRun& run) const {
   record.samples = samples_;
   record.plants = recorded_;
   record.channels = channels_;
-  record.sensitivity_parameters = Traits::sensitivities;
   record.allocate(true);
   record.outcome = Outcome::stable;
   record.largest_spread = 0.0;
   run.recorded = run.pending = 0;
-  run.waiting.resize(y_.size() * kFlats * kBufferSamples * sizeof(Real) / sizeof(double));
+  run.waiting.resize(y_.size() * kBufferSamples * sizeof(Real) / sizeof(double));
   run.theta.assign(recorded_.size(), 0.0);
 }
 

@@ -6,11 +6,11 @@
 namespace swingbank::sim::batch {
 
 /// Decides whether the lanes share the grid's own matrix, and sets it up. They do in grids of many sources,
-/// with three exceptions. With sensitivities every entry differs by lane. With nonlinear sources Newton's
-/// method reads the lanes' matrices. A single lane has nothing to share.
+/// with two exceptions. With nonlinear sources Newton's method reads the lanes' matrices. A single lane has
+/// nothing to share.
 template <class T>
 void BatchKernel<T>::share() {
-  shares_ = Traits::sensitivities == 0 && kLanes > 1 && nonlinear_.empty() && n_ >= SharedNetwork<T>::kMany;
+  shares_ = kLanes > 1 && nonlinear_.empty() && n_ >= SharedNetwork<T>::kMany;
   if (!shares_) return;
   const auto n = static_cast<std::size_t>(n_);
   for (std::size_t i = 0; i < n; ++i) {
@@ -55,7 +55,6 @@ const Terminals& BatchKernel<T>::set_matrix(int lane, const network::Topology& t
     Traits::set(per_lane_.far_g[i], lane, matrix.far_g[i]);
     Traits::set(per_lane_.far_b[i], lane, matrix.far_b[i]);
   }
-  if constexpr (Traits::sensitivities > 0) matrix_sensitivities(lane, matrix);
   return matrix;
 }
 
@@ -111,34 +110,6 @@ std::optional<LowRank> BatchKernel<T>::few_products(int lane, const network::Top
   else
     add_impedances(*products, own_matrix(), changes);
   return products;
-}
-
-/// Sets the derivatives of M = (G + jB) with respect to a source's impedance, dM = -M[:,k] dz M[k,:]. For the
-/// rows of remote measurements, their own column k replaces M[:,k].
-template <class T>
-void BatchKernel<T>::matrix_sensitivities(int lane, const InternalMatrix& matrix) {
-  const auto n = static_cast<std::size_t>(sources_);
-  for (int d = 0; d < Traits::sensitivities; ++d)
-    for (std::size_t k = 0; k < plants_.size(); ++k) {
-      const T* z = source_impedance(per_lane_, static_cast<int>(k));
-      const auto sensitivity = [&](const T& v) {
-        return LaneTraits<Flat>::get(v.d[static_cast<std::size_t>(d)], lane);
-      };
-      const Complex dz(sensitivity(z[0]), sensitivity(z[1]));
-      if (dz == Complex{}) continue;
-      const auto add = [&](const std::vector<double>& g, const std::vector<double>& b, std::vector<T>& to_g,
-                           std::vector<T>& to_b) {
-        for (std::size_t row = 0; row < g.size(); row += n)
-          for (std::size_t j = 0; j < n; ++j) {
-            const Complex at_k(g[row + k], b[row + k]), of_k(matrix.g[k * n + j], matrix.b[k * n + j]);
-            const Complex change = -at_k * dz * of_k;
-            Traits::set_sensitivity(to_g[row + j], lane, d, change.real());
-            Traits::set_sensitivity(to_b[row + j], lane, d, change.imag());
-          }
-      };
-      add(matrix.g, matrix.b, per_lane_.g, per_lane_.b);
-      add(matrix.far_g, matrix.far_b, per_lane_.far_g, per_lane_.far_b);
-    }
 }
 
 }  // namespace swingbank::sim::batch

@@ -11,12 +11,11 @@
 
 namespace swingbank::sim::batch {
 
-/// Computes the dense-output coefficients y0, d0 to d3 of one state, each a row of flats:
+/// Computes the dense-output coefficients y0, d0 to d3 of one state, each in a row:
 /// y(theta) = y0 + theta (d0 + (1 - theta)(d1 + theta (d2 + (1 - theta) d3))), theta in 0 to 1.
 template <class T>
-void BatchKernel<T>::dense(std::size_t state, const T& h, Flat* rows) const {
+void BatchKernel<T>::dense(std::size_t state, const T& h, T* row) const {
   const std::size_t i = state;
-  T* row = reinterpret_cast<T*>(rows);
   const T delta = trial_[i] - y_[i];
   const T excess = h * k_[0][i] - delta;
   T d = T(plant::dp54::dense[0]) * k_[0][i];
@@ -57,15 +56,14 @@ void BatchKernel<T>::record_step(const T& h, unsigned accepted, const double* st
 /// New samples that do not start at a pack boundary are split between two packs.
 template <class T>
 void BatchKernel<T>::interpolate(const T& h, const double* start, const double* tried) {
-  using Of = LaneTraits<Flat>;
   struct Pass {
-    Flat a, b;  ///< theta, 1 - theta
-    Real* to;   ///< the pack's first state
+    T a, b;    ///< theta, 1 - theta
+    Real* to;  ///< the pack's first state
     int lane, offset;
-    decltype(Of::mask(0U)) later;  ///< samples that belong to this pack, not to the next
+    decltype(Traits::mask(0U)) later;  ///< samples that belong to this pack, not to the next
   };
   const double spacing = 1.0 / options_.rate;
-  const std::size_t flats = y_.size() * kFlats * kLanes;  // number of values of one pack
+  const std::size_t values = y_.size() * kLanes;  // number of values of one pack
   std::array<Pass, kBufferSamples> passes;
   std::size_t count = 0;
   for (const Due& due : due_) {
@@ -77,32 +75,29 @@ void BatchKernel<T>::interpolate(const T& h, const double* start, const double* 
       const int first = run.recorded + run.pending + done;
       for (int s = 0; s < kLanes; ++s)
         theta[(s + offset) % kLanes] = std::min(1.0, ((first + s) * spacing - start[due.lane]) * inverse);
-      const Flat a = Of::load(theta);
+      const T a = Traits::load(theta);
       const auto pack = static_cast<std::size_t>((run.pending + done) / kLanes);
-      passes[count++] = {a,        Flat(1.0) - a, waiting(run) + pack * flats,
-                         due.lane, offset,        Of::mask(~((1U << offset) - 1U))};
+      passes[count++] = {a,        T(1.0) - a, waiting(run) + pack * values,
+                         due.lane, offset,     Traits::mask(~((1U << offset) - 1U))};
     }
   }
   for (const int state : sampled_) {
-    Flat rows[5 * kFlats];
+    T rows[5];
     dense(static_cast<std::size_t>(state), h, rows);
     const Real* d = reinterpret_cast<const Real*>(rows);
-    constexpr std::size_t row = kFlats * kLanes;
-    const std::size_t place = static_cast<std::size_t>(state) * row;
+    const std::size_t place = static_cast<std::size_t>(state) * kLanes;
     for (std::size_t k = 0; k < count; ++k) {
       const Pass& p = passes[k];
-      for (std::size_t f = 0; f < kFlats; ++f) {
-        const Real* at = d + f * kLanes + p.lane;
-        const Flat value =
-            Flat(at[0]) + p.a * (Flat(at[row]) + p.b * (Flat(at[2 * row]) +
-                                                        p.a * (Flat(at[3 * row]) + p.b * Flat(at[4 * row]))));
-        Real* to = p.to + place + f * kLanes;
-        if (p.offset == 0) {
-          Of::store(value, to);
-        } else {
-          Of::store(select(p.later, value, Of::load(to)), to);
-          Of::store(select(p.later, Of::load(to + flats), value), to + flats);
-        }
+      const Real* at = d + p.lane;
+      const T value =
+          T(at[0]) + p.a * (T(at[kLanes]) +
+                            p.b * (T(at[2 * kLanes]) + p.a * (T(at[3 * kLanes]) + p.b * T(at[4 * kLanes]))));
+      Real* to = p.to + place;
+      if (p.offset == 0) {
+        Traits::store(value, to);
+      } else {
+        Traits::store(select(p.later, value, Traits::load(to)), to);
+        Traits::store(select(p.later, Traits::load(to + values), value), to + values);
       }
     }
   }
@@ -115,9 +110,8 @@ void BatchKernel<T>::broadcast_constants(int lane) {
                            std::size_t count) {
     if (count == 0) return;  // data() of an empty vector may be null
     const Real* __restrict source = reinterpret_cast<const Real*>(from.data()) + lane;
-    Flat* __restrict target = reinterpret_cast<Flat*>(to.data());
-    for (std::size_t i = first * kFlats; i < (first + count) * kFlats; ++i)
-      target[i] = Flat(source[i * kLanes]);
+    T* __restrict target = reinterpret_cast<T*>(to.data());
+    for (std::size_t i = first; i < first + count; ++i) target[i] = T(source[i * kLanes]);
   };
   const Constants& from = per_lane_;
   Constants& to = per_sample_;
@@ -150,18 +144,17 @@ void BatchKernel<T>::broadcast_constants(int lane) {
 template <class T>
 const T* BatchKernel<T>::waiting_pack(const BatchRun& run, int first, const std::vector<int>& states,
                                       T* buffer) const {
-  const std::size_t flats = y_.size() * kFlats * kLanes;
+  const std::size_t values = y_.size() * kLanes;
   const int offset = first % kLanes;
-  const Real* from = waiting(run) + static_cast<std::size_t>(first / kLanes) * flats;
+  const Real* from = waiting(run) + static_cast<std::size_t>(first / kLanes) * values;
   if (offset == 0) return reinterpret_cast<const T*>(from);
   Real* to = reinterpret_cast<Real*>(buffer);
   for (const int state : states) {
-    const std::size_t place = static_cast<std::size_t>(state) * kFlats * kLanes;
-    for (std::size_t i = place; i < place + kFlats * kLanes; i += kLanes)
-      for (int l = 0; l < kLanes; ++l) {
-        const int at = l + offset;
-        to[i + l] = at < kLanes ? from[i + at] : from[i + flats + at - kLanes];
-      }
+    const std::size_t place = static_cast<std::size_t>(state) * kLanes;
+    for (int l = 0; l < kLanes; ++l) {
+      const int at = l + offset;
+      to[place + l] = at < kLanes ? from[place + at] : from[place + values + at - kLanes];
+    }
   }
   return buffer;
 }
@@ -178,7 +171,7 @@ void BatchKernel<T>::evaluate_pending(int lane, int count) {
     if (timed_) {
       alignas(64) double at[kLanes];
       for (int l = 0; l < kLanes; ++l) at[l] = (run.recorded + l) / options_.rate;
-      signals_.t = minimum(Traits::constant(LaneTraits<Flat>::load(at)), per_sample_.last_moment);
+      signals_.t = minimum(Traits::load(at), per_sample_.last_moment);
     }
     emfs(per_sample_, x);
     if (records_whole(lane))
@@ -197,7 +190,7 @@ void BatchKernel<T>::drop_waiting(BatchRun& run, int count) {
   run.pending -= count;
   for (int moved = 0; moved < run.pending; moved += kLanes) {
     const T* from = waiting_pack(run, count + moved, sampled_, kept_.data());
-    T* to = reinterpret_cast<T*>(waiting(run) + static_cast<std::size_t>(moved) * y_.size() * kFlats);
+    T* to = reinterpret_cast<T*>(waiting(run) + static_cast<std::size_t>(moved) * y_.size());
     for (const int state : sampled_) to[state] = from[state];
   }
 }
@@ -270,16 +263,11 @@ void BatchKernel<T>::outputs(std::size_t k, const T* x, BatchRun& run, int count
         break;
       }
     }
-    const auto put = [&](const Flat& flat, double* row) {
-      double* to = row + run.recorded;
-      if (count == kLanes) return LaneTraits<Flat>::stream(flat, to);
-      for (int l = 0; l < count; ++l) to[l] = LaneTraits<Flat>::get(flat, l);
-    };
-    const int plant = static_cast<int>(k), channel = static_cast<int>(j);
-    put(Traits::value(v), run.record.at(plant, channel));
-    if constexpr (Traits::sensitivities > 0)
-      for (int d = 0; d < Traits::sensitivities; ++d)
-        put(v.d[static_cast<std::size_t>(d)], run.record.sensitivity(d, plant, channel));
+    double* to = run.record.at(static_cast<int>(k), static_cast<int>(j)) + run.recorded;
+    if (count == kLanes)
+      Traits::stream(v, to);
+    else
+      for (int l = 0; l < count; ++l) to[l] = Traits::get(v, l);
   }
 }
 
@@ -306,16 +294,12 @@ void BatchKernel<T>::repeat_last(BatchRun& run, int until) const {
   if (run.recorded == 0 || run.recorded >= until) return;
   for (std::size_t k = 0; k < recorded_.size(); ++k)
     for (std::size_t j = 0; j < channels_.size(); ++j) {
-      const auto repeat = [&](double* v) {
-        const double last = v[run.recorded - 1];
-        int i = run.recorded;
-        for (; i < until && i % kLanes != 0; ++i) v[i] = last;
-        for (; i + kLanes <= until; i += kLanes) LaneTraits<Flat>::stream(Flat(last), v + i);
-        for (; i < until; ++i) v[i] = last;
-      };
-      repeat(run.record.at(static_cast<int>(k), static_cast<int>(j)));
-      for (int d = 0; d < Traits::sensitivities; ++d)
-        repeat(run.record.sensitivity(d, static_cast<int>(k), static_cast<int>(j)));
+      double* v = run.record.at(static_cast<int>(k), static_cast<int>(j));
+      const double last = v[run.recorded - 1];
+      int i = run.recorded;
+      for (; i < until && i % kLanes != 0; ++i) v[i] = last;
+      for (; i + kLanes <= until; i += kLanes) Traits::stream(T(last), v + i);
+      for (; i < until; ++i) v[i] = last;
     }
   run.recorded = until;
 }

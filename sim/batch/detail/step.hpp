@@ -12,13 +12,13 @@ void BatchKernel<T>::evaluate_fresh() {
   if (timed_) {
     alignas(64) double now[kLanes];
     for (int l = 0; l < kLanes; ++l) now[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
-    time_ = Traits::constant(LaneTraits<Flat>::load(now));
+    time_ = Traits::load(now);
   }
   derivative(y_.data(), kept_.data());
   const auto fresh = Traits::mask(fresh_);
   for (Watch& watch : watched_) {
     watch.start = select(fresh, watch.last, watch.start);
-    watch.rested = select(fresh, Flat(0.0), watch.rested);
+    watch.rested = select(fresh, T(0.0), watch.rested);
   }
   for (std::size_t i = 0; i < y_.size(); ++i) k_[0][i] = select(fresh, kept_[i], k_[0][i]);
   fresh_ = 0;
@@ -47,16 +47,16 @@ void BatchKernel<T>::stage(const T& h) {
 
 /// Returns the largest weighted error over the states, in units of the tolerance.
 template <class T>
-typename BatchKernel<T>::Flat BatchKernel<T>::scaled_error(const Flat& h) const {
-  Flat worst(0.0);
-  const auto add = [&worst](const Flat& e) { worst = select(e <= worst, worst, e); };  // propagates NaN
+T BatchKernel<T>::scaled_error(const T& h) const {
+  T worst(0.0);
+  const auto add = [&worst](const T& e) { worst = select(e <= worst, worst, e); };  // propagates NaN
   for (const int state : moving_) add(own_error(static_cast<std::size_t>(state)));
   if (weighs_)
     for (const Weighed& w : weighed_)
       add(own_error(static_cast<std::size_t>(w.state)) *
-          Traits::value(per_lane_.c[static_cast<std::size_t>(w.coefficient)]));
+          per_lane_.c[static_cast<std::size_t>(w.coefficient)]);
   for (const Watch& watch : watched_) {
-    const Flat kink = has_kink(watch);
+    const T kink = has_kink(watch);
     for (int i = watch.first; i < watch.first + watch.count; ++i)
       add(kink * kink_error(static_cast<std::size_t>(i)));
   }
@@ -70,32 +70,32 @@ typename BatchKernel<T>::Flat BatchKernel<T>::scaled_error(const Flat& h) const 
 
 /// Returns the weighted embedded error estimate of a state, divided by h.
 template <class T>
-typename BatchKernel<T>::Flat BatchKernel<T>::own_error(std::size_t state) const {
+T BatchKernel<T>::own_error(std::size_t state) const {
   T sum = T(plant::dp54::error[0]) * k_[0][state];
   for (int j = 2; j < plant::dp54::kStages; ++j) sum = sum + T(plant::dp54::error[j]) * k_[j][state];
-  return Traits::magnitude(sum) * Flat(weight_[state]);
+  return absolute(sum) * T(weight_[state]);
 }
 
 /// Returns 1 if a state leaves its limit within the step, else 0.
 template <class T>
-typename BatchKernel<T>::Flat BatchKernel<T>::leaves_limit(std::size_t state) const {
-  const Flat zero(0.0), one(1.0), first = Traits::magnitude(k_[0][state]),
-                                  last = Traits::magnitude(k_[plant::dp54::kStages - 1][state]);
+T BatchKernel<T>::leaves_limit(std::size_t state) const {
+  const T zero(0.0), one(1.0), first = absolute(k_[0][state]),
+                               last = absolute(k_[plant::dp54::kStages - 1][state]);
   return select(first <= zero, select(last <= zero, zero, one), zero);
 }
 
 /// Returns 1 if Vs reaches or leaves a limit within the step, else 0.
 template <class T>
-typename BatchKernel<T>::Flat BatchKernel<T>::has_kink(const Watch& watch) const {
-  const Flat zero(0.0), one(1.0);
-  const Flat moves = select(watch.same + watch.rested <= zero, zero, one);
-  return select(Flat(plant::dp54::kStages - 1) <= watch.same, zero, moves);
+T BatchKernel<T>::has_kink(const Watch& watch) const {
+  const T zero(0.0), one(1.0);
+  const T moves = select(watch.same + watch.rested <= zero, zero, one);
+  return select(T(plant::dp54::kStages - 1) <= watch.same, zero, moves);
 }
 
 /// Updates the watch after the evaluation of a stage.
 template <class T>
 void BatchKernel<T>::watch_stage(Watch& watch, const T& vs) {
-  const Flat now = Traits::value(vs), zero(0.0), one(1.0);
+  const T now = vs, zero(0.0), one(1.0);
   watch.rested_next = select(now <= watch.last, select(watch.last <= now, one, zero), zero);
   watch.same = watch.same + watch.rested_next;
   watch.last = now;
@@ -103,16 +103,16 @@ void BatchKernel<T>::watch_stage(Watch& watch, const T& vs) {
 
 /// Returns the weighted error estimate of a state for a kink within the step, divided by h; see dp54::kink.
 template <class T>
-typename BatchKernel<T>::Flat BatchKernel<T>::kink_error(std::size_t state) const {
-  Flat worst(0.0);
+T BatchKernel<T>::kink_error(std::size_t state) const {
+  T worst(0.0);
   for (const auto& difference : plant::dp54::kink) {
     T sum =
         T(difference[2]) * k_[2][state] + T(difference[3]) * k_[3][state] + T(difference[6]) * k_[6][state];
     sum = sum + T(difference[0]) * k_[0][state] + T(difference[4]) * k_[4][state];
-    const Flat e = Traits::magnitude(sum);
+    const T e = absolute(sum);
     worst = select(e <= worst, worst, e);
   }
-  return worst * Flat(kKinkShare * std::max(weight_[state], kKinkWeight / options_.tolerance));
+  return worst * T(kKinkShare * std::max(weight_[state], kKinkWeight / options_.tolerance));
 }
 
 /// Returns the largest change of the angle between two rotors since the start [rad].
@@ -143,8 +143,8 @@ double BatchKernel<T>::angle_spread_within_islands(int lane) const {
   alignas(64) double moved[kLanes], on[kLanes];
   for (std::size_t i = 0; i < plants_.size(); ++i) {
     if (!plants_[i].rotor) continue;
-    LaneTraits<Flat>::store(Traits::value(y_[static_cast<std::size_t>(plants_[i].x)] - rest_[i]), moved);
-    LaneTraits<Flat>::store(Traits::value(per_lane_.on[i]), on);
+    Traits::store(y_[static_cast<std::size_t>(plants_[i].x)] - rest_[i], moved);
+    Traits::store(per_lane_.on[i], on);
     if (on[l] < 0.5) continue;
     auto& [low, high] = range.emplace(island[i], std::pair{moved[l], moved[l]}).first->second;
     low = std::min(low, moved[l]);
@@ -184,7 +184,7 @@ void BatchKernel<T>::clamp_states() {
     p.equations.clamp_states(&per_lane_.c[static_cast<std::size_t>(p.c)], &y_[static_cast<std::size_t>(p.x)],
                              moved);
   alignas(64) double by[kLanes];
-  LaneTraits<Flat>::store(Traits::value(moved), by);
+  Traits::store(moved, by);
   for (int l = 0; l < kLanes; ++l)
     if (by[l] > 0.0) {
       fresh_ |= 1U << l;
@@ -198,7 +198,7 @@ void BatchKernel<T>::clamp_states() {
 template <class T>
 void BatchKernel<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];
-  LaneTraits<Flat>::store(Traits::value(angle_spread(y_.data())), angle);
+  Traits::store(angle_spread(y_.data()), angle);
   // The voltage search may succeed with a shorter step.
   if (const unsigned again = per_lane_.fallen & ~accepted; again != 0) begin_search(per_lane_, again, 1.0);
   per_lane_.fallen = 0;
@@ -235,15 +235,14 @@ void BatchKernel<T>::run(const Next& next, const Done& done) {
     alignas(64) double start[kLanes];
     bool reaches[kLanes];
     for (int l = 0; l < kLanes; ++l) tried[l] = lanes_[static_cast<std::size_t>(l)].clock.step(reaches[l]);
-    const Flat step = LaneTraits<Flat>::load(tried);
-    const T h = Traits::constant(step);
+    const T h = Traits::load(tried);
     if (timed_) {
       for (int l = 0; l < kLanes; ++l) start[l] = lanes_[static_cast<std::size_t>(l)].clock.t;
-      start_ = Traits::constant(LaneTraits<Flat>::load(start));
+      start_ = Traits::load(start);
     }
     for (Watch& watch : watched_) {
       watch.last = watch.start;
-      watch.same = Flat(0.0);
+      watch.same = T(0.0);
     }
     stage<1>(h);
     stage<2>(h);
@@ -251,7 +250,7 @@ void BatchKernel<T>::run(const Next& next, const Done& done) {
     stage<4>(h);
     stage<5>(h);
     stage<6>(h);
-    LaneTraits<Flat>::store(scaled_error(step), error);
+    Traits::store(scaled_error(h), error);
     unsigned accepted = 0;
     for (int l = 0; l < kLanes; ++l) {
       if (!((active_ >> l) & 1U)) continue;
