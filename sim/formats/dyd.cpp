@@ -20,7 +20,7 @@ namespace {
 using pslf::Line;
 using pslf::lower;
 using pslf::Token;
-using pslf::trimmed;
+using psse::trimmed;
 
 const dyd::Model* model_of(std::string_view name) {
   const auto all = dyd::models();

@@ -33,22 +33,22 @@ namespace {
 /// records; for other lines, an empty name.
 std::pair<std::string, int> header_of(const std::string& line) {
   constexpr std::string_view word = " data";
-  const std::string text = pslf::lower(pslf::trimmed(line));
+  const std::string text = pslf::lower(psse::trimmed(line));
   if (text.empty() || std::isalpha(static_cast<unsigned char>(text[0])) == 0) return {};
   const auto data = text.find(word), open = text.find('['), close = text.find(']');
   if (data == std::string::npos || open == std::string::npos || close == std::string::npos || data > open ||
-      open > close || !pslf::trimmed(text.substr(data + word.size(), open - data - word.size())).empty())
+      open > close || !psse::trimmed(text.substr(data + word.size(), open - data - word.size())).empty())
     return {};
-  const std::string number = pslf::trimmed(text.substr(open + 1, close - open - 1));
+  const std::string number = psse::trimmed(text.substr(open + 1, close - open - 1));
   int count = 0;
   const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), count);
   if (error != std::errc{} || stop != number.data() + number.size() || count < 0) return {};
-  return {pslf::trimmed(text.substr(0, data)), count};
+  return {psse::trimmed(text.substr(0, data)), count};
 }
 
 psse::Record record_of(const std::vector<pslf::Token>& tokens, int line) {
   psse::Record record{line, true, {}};
-  for (const pslf::Token& token : tokens) record.fields.push_back({pslf::trimmed(token.text), token.quoted});
+  for (const pslf::Token& token : tokens) record.fields.push_back({psse::trimmed(token.text), token.quoted});
   return record;
 }
 
@@ -56,7 +56,7 @@ psse::Record record_of(const std::vector<pslf::Token>& tokens, int line) {
 
 std::vector<std::string> EpcReader::block(std::size_t& at) const {
   std::vector<std::string> lines;
-  for (++at; at < lines_.size() && pslf::trimmed(lines_[at]) != "!"; ++at) lines.push_back(lines_[at]);
+  for (++at; at < lines_.size() && psse::trimmed(lines_[at]) != "!"; ++at) lines.push_back(lines_[at]);
   ++at;
   return lines;
 }
@@ -72,12 +72,11 @@ void EpcReader::solution_parameters(const std::vector<std::string>& block, std::
 
 /// Locates the sections of the file; read_sections() reads them in its own order.
 void EpcReader::divide() {
-  constexpr std::string_view mark = "\xEF\xBB\xBF";  // byte order mark of some editors
-  if (!lines_.empty() && lines_[0].starts_with(mark)) lines_[0].erase(0, mark.size());
+  psse::erase_byte_order_mark(lines_);
   bool ended = false;
   std::size_t at = 0;
   while (at < lines_.size() && !ended) {
-    const std::string text = pslf::lower(pslf::trimmed(lines_[at]));
+    const std::string text = pslf::lower(psse::trimmed(lines_[at]));
     if (const auto [name, count] = header_of(lines_[at]); !name.empty()) {
       sections_.push_back({name, count, ++at, at});
       continue;
@@ -86,7 +85,7 @@ void EpcReader::divide() {
       for (const std::string& line : block(at)) {
         if (!network_.title.empty())
           network_.title += network_.title.find('\n') == std::string::npos ? "\n" : " ";
-        network_.title += pslf::trimmed(line);
+        network_.title += psse::trimmed(line);
       }
     } else if (text == "comments") {
       (void)block(at);
@@ -187,34 +186,15 @@ void EpcReader::report_left_out() {
 
 network::Network EpcReader::read() {
   read_sections();
-  finish();
+  check_network();
+  complete_network([&](std::size_t i) { return place(generator_line_[i]); });
   problems_.raise();
   return std::move(network_);
 }
 RawSurvey EpcReader::survey() {
   units_only_ = true;
   read_sections();
-  return {std::move(network_), std::move(generator_line_), std::move(branch_line_), problems_.list()};
-}
-
-void EpcReader::finish() {
-  network::settle_isolated(network_);
-  network::isolate_idle_stars(network_, stars_);
-  network::check_finite(network_, file_, problems_);
-  if (!problems_.empty()) return;
-  if (!devices_.empty() || !identities_.kept().empty()) network::settle_stars(network_, stars_);
-  network::settle_duplicates(network_, identities_.kept(), options_.repeated == Repeated::voltages, devices_);
-  network::replace_devices(network_, devices_, options_.devices, problems_);
-  network::settle_generators(network_, [&](std::size_t i) { return place(generator_line_[i]); });
-  network::settle_islands(network_);
-}
-
-bool EpcReader::status(psse::Fields& f) {
-  const int value = f.integer(0, "st");
-  if (value != 0 && value != 1)
-    problems_.add("st = " + std::to_string(value), f.where(), "a status is 0 or 1",
-                  "give 1 (in service) or 0 (out of service)");
-  return value == 1;
+  return take_survey();
 }
 
 std::string EpcReader::id_of(const psse::Fields& of, std::size_t i) {

@@ -15,8 +15,6 @@ using psse::shortest;
 
 namespace {
 
-using Impedance = std::complex<long double>;
-
 /// Columns of a transformer's record after the ':', with its lines joined.
 enum Column : std::size_t {
   kInternal = 6,
@@ -96,10 +94,6 @@ struct TwoPort {
 
 }  // namespace
 
-void EpcReader::raise_impedance(network::Branch& b, const Fields& f) {
-  network::raise_impedance(network_, b.r, b.x, network_.branch_text(b) + " (" + f.where() + ")");
-}
-
 void EpcReader::branch(const Row& row) {
   Fields of(row.of, file_, problems_), f(row.says, file_, problems_);
   network::Branch b{};
@@ -127,9 +121,7 @@ void EpcReader::branch(const Row& row) {
   if (f.integer(second + 30, "ohm", 0) != 0)
     problems_.add(name + " in ohms", f.where(), "only impedances per unit are read",
                   "save the case per unit");
-  if (b.from == b.to && b.from >= 0)
-    problems_.add("a branch from bus " + std::to_string(from) + " to itself", of.where(),
-                  "a branch connects two buses", "correct the bus numbers");
+  check_ends("a branch", b, f);
   if (b.from < 0 || b.to < 0) return;
   raise_impedance(b, f);
   const std::tuple key{b.from, b.to, b.circuit};
@@ -201,39 +193,15 @@ void EpcReader::transformer(const Row& row) {
 }
 
 void EpcReader::two_windings(const std::string& circuit, Fields& f, int from, int to, bool on) {
-  network::Branch b{};
-  b.transformer = true;
-  b.from = from;
-  b.to = to;
-  b.circuit = circuit;
-  b.in_service = on;
   const Impedance z = pair_impedance(f, kPsR, "ps_r", "ps_x", f.number(kTbase, "tbase"), base_, problems_);
   const long double t1 = primary(f, at(from).kv, problems_),
                     t2 = other(f, kVnomS, kFixedS, at(to).kv, "secondary", problems_);
-  b.r = static_cast<double>(z.real() * t2 * t2);
-  b.x = static_cast<double>(z.imag() * t2 * t2);
+  network::Branch b = transformer_of(from, to, circuit, on, z * t2 * t2);
   b.tap = static_cast<double>(t1 / t2);
   b.shift = angle(f, kAngleP, "anglp") - angle(f, kAngleS, "angls");
   b.shunt_from = magnetising(f, from);
   raise_impedance(b, f);
   network_.branches.push_back(std::move(b));
-}
-
-int EpcReader::star_point(const std::array<int, 3>& ends, int internal, const std::string& circuit, bool on) {
-  if (const auto found = index_.find(internal); internal > 0 && found != index_.end()) return found->second;
-  network::Bus star{};
-  star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
-  star.name = "STAR " + ends_text(at(ends[0]).number, at(ends[1]).number) + "-" +
-              std::to_string(at(ends[2]).number) + " " + circuit;
-  for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
-  star.kv = 0.0;  // no nominal voltage: windings of three voltages meet here
-  star.type = on ? network::BusType::load : network::BusType::isolated;
-  star.vm = at(ends[0]).vm;
-  star.va = at(ends[0]).va;
-  const int index = static_cast<int>(network_.buses.size());
-  network_.buses.push_back(std::move(star));
-  stars_.insert(index);
-  return index;
 }
 
 void EpcReader::three_windings(const std::string& circuit, Fields& f, const std::array<int, 3>& ends,
@@ -243,24 +211,19 @@ void EpcReader::three_windings(const std::string& circuit, Fields& f, const std:
   const Impedance ps = pair_impedance(f, kPsR, "ps_r", "ps_x", tbase, base_, problems_),
                   pt = pair_impedance(f, kPtR, "pt_r", "pt_x", own_pt > 0 ? own_pt : tbase, base_, problems_),
                   ts = pair_impedance(f, kTsR, "ts_r", "ts_x", own_ts > 0 ? own_ts : tbase, base_, problems_);
-  const std::array<Impedance, 3> z{(ps + pt - ts) / 2.0L, (ps + ts - pt) / 2.0L, (pt + ts - ps) / 2.0L};
+  const std::array<Impedance, 3> z = star_equivalent(ps, ts, pt);
   const std::array<long double, 3> turns{primary(f, at(ends[0]).kv, problems_),
                                          other(f, kVnomS, kFixedS, at(ends[1]).kv, "secondary", problems_),
                                          other(f, kVnomT, kFixedT, at(ends[2]).kv, "tertiary", problems_)};
   const std::array<double, 3> shift{angle(f, kAngleP, "anglp"), angle(f, kAngleS, "angls"),
                                     angle(f, kAngleT, "anglt")};
-  const int star = star_point(ends, f.integer(kInternal, "internal bus", 0), circuit, on);
+  const int internal = f.integer(kInternal, "internal bus", 0);
+  const auto given = index_.find(internal);
+  const int star = internal > 0 && given != index_.end()
+                       ? given->second
+                       : add_star_point(ends, circuit, on, at(ends[0]).vm, at(ends[0]).va);
   for (std::size_t i = 0; i < 3; ++i) {
-    network::Branch b{};
-    b.transformer = true;
-    b.from = ends[i];
-    b.to = star;
-    b.circuit = circuit;
-    b.in_service = on;
-    // An impedance below the rounding error of the three values that it is computed from is zero.
-    const bool none = std::abs(z[i]) <= 1e-12L * (std::abs(ps) + std::abs(pt) + std::abs(ts));
-    b.r = none ? 0.0 : static_cast<double>(z[i].real());
-    b.x = none ? 0.0 : static_cast<double>(z[i].imag());
+    network::Branch b = transformer_of(ends[i], star, circuit, on, z[i]);
     b.tap = static_cast<double>(turns[i]);
     b.shift = shift[i];
     if (i == 0) b.shunt_from = magnetising(f, ends[0]);

@@ -16,17 +16,13 @@ void EpcReader::bus(const Row& row) {
   b.name = of.text(1, "");
   b.kv = static_cast<double>(of.number(2, "kV", 0.0L));
   const int type = f.integer(0, "ty");
-  double vsched = static_cast<double>(f.number(1, "vsched"));
+  const double vsched = static_cast<double>(f.number(1, "vsched"));
   b.vm = static_cast<double>(f.number(2, "volt"));
   b.va = static_cast<double>(f.number(3, "angle") / psse::kDegrees);
   b.area = f.integer(4, "ar", 1);
   b.zone = f.integer(5, "zone", 1);
   b.owner = f.integer(12, "own", 1);
   if (!identities_.once("bus " + std::to_string(b.number), of)) return;
-  const std::string where = "bus " + std::to_string(b.number) + " (" + of.where() + ")";
-  if (b.number <= 0)
-    problems_.add("bus number " + std::to_string(b.number), of.where(), "numbers are positive",
-                  "give a positive number");
   b.type = type == 0             ? network::BusType::slack
            : std::abs(type) == 2 ? network::BusType::generator
                                  : network::BusType::load;
@@ -36,16 +32,11 @@ void EpcReader::bus(const Row& row) {
                   "give one of these");
   if (f.integer(13, "st", 0) != 0) {
     b.type = network::BusType::isolated;
-    network_.remark("buses whose st is not 0 are out of service", where);
+    network_.remark("buses whose st is not 0 are out of service",
+                    "bus " + std::to_string(b.number) + " (" + of.where() + ")");
   }
-  if (b.type != network::BusType::isolated && !(b.vm > 0)) {
-    network_.remark("bus voltages of 0 pu or below are replaced by 1 pu", where);
-    b.vm = 1.0;
-  }
-  if (!(vsched > 0)) vsched = 0.0;
-  index_.emplace(b.number, static_cast<int>(network_.buses.size()));
-  vsched_.push_back(vsched);
-  network_.buses.push_back(std::move(b));
+  vsched_.push_back(vsched > 0 ? vsched : 0.0);
+  add_bus(std::move(b), of);
 }
 
 void EpcReader::load(const Row& row) {
@@ -130,10 +121,7 @@ void EpcReader::svd(const Row& row) {
   s.admittance = {static_cast<double>(f.number(7, "g")), static_cast<double>(f.number(8, "b"))};
   if (!identities_.once("svd '" + id + "' at bus " + std::to_string(number), of)) return;
   if (!on || s.bus < 0) return;
-  s.id = id == "1" ? "SW" : "SW" + id;
-  while (std::ranges::any_of(network_.shunts,
-                             [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; }))
-    s.id += "+";
+  s.id = switched_id(s.bus, id);
   if (type == 1)
     steps_of(row, s, regulated, f);
   else if (type != 0)
@@ -143,29 +131,17 @@ void EpcReader::svd(const Row& row) {
 }
 
 /// Reads the steps of an svd of type 1, which regulates a bus to vsched within vband. The second line has
-/// pairs of number and size of steps. Reactors and capacitors accumulate separately.
+/// pairs of number and size of steps.
 void EpcReader::steps_of(const Row& row, const network::Shunt& shunt, int regulated, Fields& f) {
   constexpr std::size_t columns = 26, blocks = 10;
   const std::size_t first = row.starts.empty() ? columns : row.starts[0];
   const double band = std::abs(static_cast<double>(f.number(11, "vband", 0.0L)));
-  double inductive = 0.0, capacitive = 0.0;
-  int regulated_bus = shunt.bus;
-  if (const auto found = index_.find(regulated); found != index_.end())
-    regulated_bus = found->second;
-  else if (regulated > 0)
-    network_.remark("switched shunts that regulate a missing bus regulate their own",
-                    "bus " + std::to_string(at(shunt.bus).number) + ": regulated bus " +
-                        std::to_string(regulated) + " (" + f.where() + ")");
+  const int regulated_bus = regulated_by(shunt.bus, std::max(regulated, 0), "regulated bus ", f);
   network::SwitchedShunt s{shunt.bus, shunt.id, shunt.admittance.imag(), regulated_bus, 0.0, 0.0, {0.0}};
   for (std::size_t k = 0; k < blocks; ++k) {
     const int steps = f.integer(first + 2 * k, "n", 0);
     const double each = static_cast<double>(f.number(first + 2 * k + 1, "b of a step", 0.0L));
-    constexpr int most = 1000;  // maximum steps of a block; more is an error
-    if (steps < 0 || steps > most)
-      problems_.add("a block of " + std::to_string(steps) + " steps", f.where(), "0 to 1000 are allowed",
-                    "correct the number");
-    for (int i = 0; i < std::min(steps, most) && each != 0.0; ++i)
-      s.steps.push_back((each > 0.0 ? capacitive : inductive) += each);
+    add_steps(s, steps, each, f);
   }
   if (s.steps.size() == 1) return;  // no steps to switch
   const double setpoint = vsched_[static_cast<std::size_t>(regulated_bus)];
@@ -199,20 +175,8 @@ void EpcReader::generator(const Row& row) {
   const double tap = static_cast<double>(f.number(second + 2, "gtap", 1.0L));
   if (g.bus < 0) return;
   const std::string where = "'" + g.id + "' at bus " + std::to_string(number) + " (" + f.where() + ")";
-  if (units_only_ && !(g.mva > 0)) {
-    problems_.add("mbase = " + shortest(g.mva) + " MVA", f.where(),
-                  "the machine's per-unit values refer to it", "give a base > 0 MVA");
-  } else if (!(g.mva > 0)) {
-    if (g.in_service)
-      network_.remark("machine bases of 0 MVA or below are replaced by sbase",
-                      where + ": mbase = " + shortest(g.mva) + " MVA");
-    g.mva = static_cast<double>(base_);
-  }
-  const bool step_up = g.rt != 0.0 || g.xt != 0.0;
-  if (g.in_service && step_up && !(g.rt >= 0 && g.xt >= 0))
-    problems_.add("rtran = " + shortest(g.rt) + " pu, xtran = " + shortest(g.xt) + " pu", f.where(),
-                  "resistance and leakage reactance cannot be negative", "give rtran >= 0 and xtran >= 0");
-  if (g.in_service && step_up && tap != 1.0)
+  check_machine(g, {"mbase", "sbase", "rtran", "xtran"}, where, f);
+  if (g.in_service && (g.rt != 0.0 || g.xt != 0.0) && tap != 1.0)
     network_.remark("step-up transformers inside a generator's record are modelled at nominal ratio",
                     where + ": gtap = " + shortest(tap));
   int regulated_bus = g.bus;

@@ -49,8 +49,7 @@ class DyrReader {
  public:
   DyrReader(std::vector<std::string> lines, std::string name, const DyrOptions& options)
       : lines_(std::move(lines)), name_(std::move(name)) {
-    constexpr std::string_view mark = "\xEF\xBB\xBF";  // byte order mark of some editors
-    if (!lines_.empty() && lines_[0].starts_with(mark)) lines_[0].erase(0, mark.size());
+    psse::erase_byte_order_mark(lines_);
     constexpr char end_of_file = 0x1A;  // Ctrl-Z, the end of a text file in DOS
     for (std::size_t i = 0; i < lines_.size(); ++i)
       if (const auto at = lines_[i].find(end_of_file); at != std::string::npos) {

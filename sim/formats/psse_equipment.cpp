@@ -21,20 +21,11 @@ void RawReader::bus(const Record& record) {
   b.owner = f.integer(c.bus_owner, "OWNER", 1);
   b.vm = static_cast<double>(f.number(c.bus_voltage, "VM", 1.0L));
   b.va = static_cast<double>(f.number(c.bus_voltage + 1, "VA", 0.0L) / kDegrees);
-  if (b.number <= 0)
-    problems_.add("bus number " + std::to_string(b.number), f.where(), "numbers are positive",
-                  "give a positive number");
   if (type < 1 || type > 4)
     problems_.add("IDE = " + std::to_string(type), f.where(), "bus types are 1 to 4",
                   "give 1 (load), 2 (generator), 3 (slack) or 4 (isolated)");
-  if (type != 4 && !(b.vm > 0)) {
-    network_.remark("bus voltages of 0 pu or below are replaced by 1 pu",
-                    "bus " + std::to_string(b.number) + " (" + f.where() + ")");
-    b.vm = 1.0;
-  }
   b.type = static_cast<network::BusType>(type);
-  index_.emplace(b.number, static_cast<int>(network_.buses.size()));
-  network_.buses.push_back(std::move(b));
+  add_bus(std::move(b), f);
   if (version_ < 31 && version_ != 23) bus_shunt(f, 4);
 }
 
@@ -127,10 +118,7 @@ void RawReader::switched_shunt(const Record& record) {
                         f))
     return;
   if (!on || s.bus < 0) return;
-  s.id = id == "1" ? "SW" : "SW" + id;
-  while (std::ranges::any_of(network_.shunts,
-                             [&](const network::Shunt& o) { return o.bus == s.bus && o.id == s.id; }))
-    s.id += "+";  // another shunt has this id, and the writer writes both as fixed shunts
+  s.id = switched_id(s.bus, id);
   switching(f, s);
   network_.shunts.push_back(std::move(s));  // also at 0 Mvar, because a model may refer to it
 }
@@ -149,13 +137,7 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
   network::SwitchedShunt s{shunt.bus, shunt.id, shunt.admittance.imag(), shunt.bus, 0.0, 0.0, {0.0}};
   s.most = static_cast<double>(f.number(band, "VSWHI", 1.0L));
   s.least = static_cast<double>(f.number(band + 1, "VSWLO", 1.0L));
-  if (const int remote = f.integer(band + 2, "SWREG", 0); remote != 0) {
-    if (const auto found = index_.find(std::abs(remote)); found != index_.end())
-      s.regulated = found->second;
-    else
-      network_.remark("switched shunts that regulate a missing bus regulate their own",
-                      place + ": SWREG = " + std::to_string(remote) + " (" + f.where() + ")");
-  }
+  s.regulated = regulated_by(s.bus, f.integer(band + 2, "SWREG", 0), "SWREG = ", f);
   if (s.least > s.most && options_.drop_refused) {
     network_.remark("switched shunts with VSWLO above VSWHI stay at BINIT, as asked",
                     place + " (" + f.where() + ")");
@@ -166,22 +148,15 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
                   "swap them, or keep the shunt at BINIT with --drop-refused");
   // Version 35 has a status before each block.
   const std::size_t stride = columns_.switched_id ? 3 : 2, blocks = 8;
-  double inductive = 0.0, capacitive = 0.0;
   for (std::size_t k = 0; k < blocks; ++k) {
     const std::size_t first = columns_.switched_binit + 1 + stride * k;
     const bool on = stride == 2 || f.integer(first, "S", 1) != 0;
     const int steps = f.integer(first + stride - 2, "N", 0);
     const double each = pu(f.number(first + stride - 1, "B", 0.0L));
-    constexpr int most = 1000;  // maximum steps of a block; more is an error
-    if (steps < 0 || steps > most)
-      problems_.add(place + ": a block of " + std::to_string(steps) + " steps", f.where(),
-                    "0 to 1000 are allowed", "correct N");
-    for (int i = 0; on && i < std::min(steps, most) && each != 0.0; ++i)
-      s.steps.push_back((each > 0.0 ? capacitive : inductive) += each);
+    add_steps(s, steps, on ? each : 0.0, f);
   }
   std::ranges::sort(s.steps);
-  if (s.steps.size() == 1 || s.regulated < 0) return;  // no steps to switch
-  network_.switched.push_back(std::move(s));
+  if (s.steps.size() > 1) network_.switched.push_back(std::move(s));
 }
 
 void RawReader::generator(const Record& record) {
@@ -209,18 +184,7 @@ void RawReader::generator(const Record& record) {
   if (!id) return;
   g.id = *id;
   const std::string place = "'" + g.id + "' at bus " + std::to_string(number) + " (" + f.where() + ")";
-  if (units_only_ && !(g.mva > 0)) {
-    problems_.add("MBASE = " + shortest(g.mva) + " MVA", f.where(),
-                  "the machine's per-unit values refer to it", "give a base > 0 MVA");
-  } else if (!(g.mva > 0)) {
-    if (g.in_service)
-      network_.remark("machine bases of 0 MVA or below are replaced by SBASE",
-                      place + ": MBASE = " + shortest(g.mva) + " MVA");
-    g.mva = static_cast<double>(base_);
-  }
-  if (g.in_service && step_up && !(g.rt >= 0 && g.xt >= 0))
-    problems_.add("RT = " + shortest(g.rt) + " pu, XT = " + shortest(g.xt) + " pu", f.where(),
-                  "resistance and leakage reactance cannot be negative", "give RT >= 0 and XT >= 0");
+  check_machine(g, {"MBASE", "SBASE", "RT", "XT"}, place, f);
   if (units_only_ && g.in_service && step_up && tap != 1.0)
     problems_.add("GTAP = " + shortest(tap), f.where(),
                   "a step-up transformer inside the generator record is modelled at its nominal ratio",
@@ -236,12 +200,6 @@ void RawReader::generator(const Record& record) {
   regulated_.push_back(regulated == number ? 0 : regulated);
   if (!record.place.empty()) places_.push_back(record.place);
   network_.generators.push_back(std::move(g));
-}
-
-void RawReader::regulate_own_bus(network::Generator& g, const char* what, const std::string& where) {
-  g.regulated = -1;
-  g.vset = at(g.bus).vm;
-  network_.remark(what, "'" + g.id + "' at bus " + std::to_string(at(g.bus).number) + " (" + where + ")");
 }
 
 void RawReader::branch(const Record& record) {
@@ -264,22 +222,15 @@ void RawReader::branch(const Record& record) {
   const auto circuit = circuit_of(from, to, f.text(2, "1"), f);
   if (!circuit) return;
   b.circuit = *circuit;
-  if (b.from == b.to && b.from >= 0)
-    problems_.add("a branch from bus " + std::to_string(from) + " to itself", f.where(),
-                  "a branch connects two buses", "correct the bus numbers");
   if (version_ < 28) {  // branches include transformers: RATIO (0: none), ANGLE
     const double ratio = value(9, "RATIO", 0.0L);
     b.shift = static_cast<double>(f.number(10, "ANGLE", 0.0L) / kDegrees);
     b.transformer = ratio != 0.0 || b.shift != 0.0;
     b.tap = ratio == 0.0 ? 1.0 : ratio;
   }
+  check_ends("a branch", b, f);
   raise_impedance(b, f);
   if (b.from >= 0 && b.to >= 0) network_.branches.push_back(std::move(b));
-}
-
-void RawReader::raise_impedance(network::Branch& b, const Fields& f) {
-  if (b.from >= 0 && b.to >= 0)
-    network::raise_impedance(network_, b.r, b.x, network_.branch_text(b) + " (" + f.where() + ")");
 }
 
 // Reads a switching device as a line with its reactance, in service if closed. NSTAT, ratings and type are
@@ -295,9 +246,7 @@ void RawReader::switching_device(const Record& record) {
   const auto circuit = circuit_of(from, to, f.text(2, "1"), f);
   if (!circuit) return;
   b.circuit = *circuit;
-  if (b.from == b.to && b.from >= 0)
-    problems_.add("a switch from bus " + std::to_string(from) + " to itself", f.where(),
-                  "a branch connects two buses", "correct the bus numbers");
+  check_ends("a switch", b, f);
   raise_impedance(b, f);
   if (b.from >= 0 && b.to >= 0) network_.branches.push_back(std::move(b));
 }

@@ -13,11 +13,6 @@
 namespace swingbank::sim::formats::psse {
 namespace {
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 /// Reads a quoted field from its opening quote at `i` and advances `i` past the closing one. Returns false if
@@ -52,6 +47,20 @@ std::vector<std::string> lines_of(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
+}
+
+bool erase_byte_order_mark(std::vector<std::string>& lines) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  if (lines.empty() || !lines[0].starts_with(mark)) return false;
+  lines[0].erase(0, mark.size());
+  return true;
+}
+
+std::string trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
 }
 
 bool ends_section(const Record& record) {

@@ -29,6 +29,10 @@ struct Record {
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 /// The same for a string.
 std::vector<std::string> lines_of(const std::string& text);
+/// Removes the byte-order mark that some editors write before the first line. Returns true if there was one.
+bool erase_byte_order_mark(std::vector<std::string>& lines);
+/// Returns the text without leading and trailing blanks and line ends.
+std::string trimmed(std::string_view text);
 /// Characters that begin a comment at the end of a line of a .raw or .dyr, in place of a field.
 constexpr std::string_view kCommentMarks = "#!";
 /// Splits one line. An open quote becomes a problem. One of `comment_marks` in place of a field ends the

@@ -9,8 +9,6 @@
 
 namespace swingbank::sim::formats::psse {
 
-using Impedance = std::complex<long double>;
-
 struct RawReader::Codes {
   int cw, cz, cm;
 };
@@ -142,52 +140,21 @@ void RawReader::two_windings(std::span<const Record> rows, int from, int to) {
   Fields head(rows[0], file_, problems_), impedance(rows[1], file_, problems_), w1(rows[2], file_, problems_),
       w2(rows[3], file_, problems_);
   const Codes code = codes(head);
-  network::Branch b{};
-  b.transformer = true;
-  b.from = from;
-  b.to = to;
   const auto circuit = circuit_of(at(from).number, at(to).number, head.text(3, "1"), head);
   if (!circuit) return;
-  b.circuit = *circuit;
-  b.in_service = status(head.integer(11, "STAT", 1), "STAT", head);
+  const bool on = status(head.integer(11, "STAT", 1), "STAT", head);
   long double mva = base_;
   const Impedance z = series(code.cz, base_, impedance, 0, "1-2", network_, problems_, mva);
   const long double t1 = turns(code.cw, at(from).kv, w1, "WINDV1", problems_),
                     t2 = turns(code.cw, at(to).kv, w2, "WINDV2", problems_);
-  b.r = static_cast<double>(z.real() * t2 * t2);
-  b.x = static_cast<double>(z.imag() * t2 * t2);
+  network::Branch b = transformer_of(from, to, *circuit, on, z * t2 * t2);
   b.tap = static_cast<double>(t1 / t2);
   b.shift = static_cast<double>(w1.number(2, "ANG1", 0.0L) / kDegrees);
+  check_ends("a transformer", b, head);
   raise_impedance(b, impedance);
   note_table(w1, 1, network_.branches.size());
   b.shunt_from = magnetising(head, w1, code, mva, at(from));
-  if (from == to)
-    problems_.add("a transformer from bus " + std::to_string(at(from).number) + " to itself", head.where(),
-                  "a branch connects two buses", "correct the bus numbers");
   network_.branches.push_back(std::move(b));
-}
-
-int RawReader::star_point(const std::string& circuit, Fields& impedances, const std::array<int, 3>& ends,
-                          bool in_service) {
-  const auto number = [&](int i) { return std::to_string(at(ends[static_cast<std::size_t>(i)]).number); };
-  network::Bus star{};
-  // Numbers above every bus of the file, in the order of the transformers.
-  star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
-  star.name = "STAR " + number(0) + "-" + number(1) + "-" + number(2) + " " + circuit;
-  for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
-  star.kv = 0.0;  // no nominal voltage: windings of three voltages meet here
-  star.type = in_service ? network::BusType::load : network::BusType::isolated;
-  star.vm = static_cast<double>(impedances.number(9, "VMSTAR", 1.0L));
-  star.va = static_cast<double>(impedances.number(10, "ANSTAR", 0.0L) / kDegrees);
-  if (!(star.vm > 0)) {  // affects only the initial guess of the power flow
-    network_.remark("star-point voltages of 0 pu or below are replaced by 1 pu",
-                    star.name + ": VMSTAR = " + shortest(star.vm) + " pu (" + impedances.where() + ")");
-    star.vm = 1.0;
-  }
-  const int index = static_cast<int>(network_.buses.size());
-  network_.buses.push_back(std::move(star));
-  stars_.insert(index);
-  return index;
 }
 
 void RawReader::three_windings(std::span<const Record> rows, const std::array<int, 3>& ends) {
@@ -202,8 +169,6 @@ void RawReader::three_windings(std::span<const Record> rows, const std::array<in
   const Impedance z12 = series(code.cz, base_, impedances, 0, "1-2", network_, problems_, mva),
                   z23 = series(code.cz, base_, impedances, 3, "2-3", network_, problems_, other),
                   z31 = series(code.cz, base_, impedances, 6, "3-1", network_, problems_, other);
-  const std::array<Impedance, 3> z{(z12 + z31 - z23) / 2.0L, (z12 + z23 - z31) / 2.0L,
-                                   (z23 + z31 - z12) / 2.0L};
   const std::array<int, 3> out{4, 2, 3};
   const std::array<const char*, 3> names{"WINDV1", "WINDV2", "WINDV3"};
   std::string identity = "transformer " + std::to_string(at(ends[0]).number);
@@ -215,19 +180,16 @@ void RawReader::three_windings(std::span<const Record> rows, const std::array<in
   if (ends[0] == ends[1] || ends[1] == ends[2] || ends[2] == ends[0])
     problems_.add("two windings at one bus", head.where(), "they would be short-circuited",
                   "correct the bus numbers");
-  const int star = star_point(*circuit, impedances, ends, status != 0);
+  const double vm = static_cast<double>(impedances.number(9, "VMSTAR", 1.0L)),
+               va = static_cast<double>(impedances.number(10, "ANSTAR", 0.0L) / kDegrees);
+  const int star = add_star_point(ends, *circuit, status != 0, vm > 0 ? vm : 1.0, va);
+  if (!(vm > 0))  // affects only the initial guess of the power flow
+    network_.remark("star-point voltages of 0 pu or below are replaced by 1 pu",
+                    at(star).name + ": VMSTAR = " + shortest(vm) + " pu (" + impedances.where() + ")");
+  const std::array<Impedance, 3> z = star_equivalent(z12, z23, z31);
   for (std::size_t i = 0; i < 3; ++i) {
     Fields w(rows[2 + i], file_, problems_);
-    network::Branch b{};
-    b.transformer = true;
-    b.from = ends[i];
-    b.to = star;
-    b.circuit = *circuit;
-    b.in_service = status != 0 && status != out[i];
-    // An impedance below the rounding error of the three values that it is computed from is zero.
-    const bool none = std::abs(z[i]) <= 1e-12L * (std::abs(z12) + std::abs(z23) + std::abs(z31));
-    b.r = none ? 0.0 : static_cast<double>(z[i].real());
-    b.x = none ? 0.0 : static_cast<double>(z[i].imag());
+    network::Branch b = transformer_of(ends[i], star, *circuit, status != 0 && status != out[i], z[i]);
     raise_impedance(b, impedances);
     b.tap = static_cast<double>(turns(code.cw, at(ends[i]).kv, w, names[i], problems_));
     b.shift = static_cast<double>(w.number(2, "ANG", 0.0L) / kDegrees);

@@ -2,16 +2,11 @@
 // Reader of .epc files, section by section. Used only by pslf_epc*.cpp.
 #include <array>
 #include <map>
-#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include "sim/formats/detail/identities.hpp"
-#include "sim/formats/psse.hpp"
-#include "sim/formats/psse_text.hpp"
-#include "sim/network/consistency.hpp"
-#include "sim/network/tie.hpp"
+#include "sim/formats/detail/network_reader.hpp"
 
 namespace swingbank::sim::formats::epc {
 
@@ -22,12 +17,11 @@ struct Row {
 };
 
 /// Reader of one .epc; each object reads one file.
-class EpcReader {
+class EpcReader : NetworkReader {
  public:
   /// `name` replaces the file name in messages.
   EpcReader(std::vector<std::string> lines, std::string name, const RawOptions& options)
-      : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
-  EpcReader(const EpcReader&) = delete;
+      : NetworkReader(std::move(lines), std::move(name), options) {}
   network::Network read();
   RawSurvey survey();
 
@@ -46,7 +40,6 @@ class EpcReader {
   void read_sections();
   void rows(const char* name, Reads take);
   void report_left_out();
-  void finish();
 
   void bus(const Row& row);
   void load(const Row& row);
@@ -61,18 +54,10 @@ class EpcReader {
   void transformer(const Row& row);
   void two_windings(const std::string& circuit, psse::Fields& f, int from, int to, bool on);
   void three_windings(const std::string& circuit, psse::Fields& f, const std::array<int, 3>& ends, bool on);
-  int star_point(const std::array<int, 3>& ends, int internal, const std::string& circuit, bool on);
   Complex magnetising(psse::Fields& f, int bus);
 
-  /// As Identities::bus_index().
-  int find_bus(int number, const psse::Fields& fields) {
-    return identities_.bus_index(index_, number, section_, fields);
-  }
-  bool status(psse::Fields& f);
-  void raise_impedance(network::Branch& b, const psse::Fields& f);
+  bool status(psse::Fields& f) { return NetworkReader::status(f.integer(0, "st"), "st", f); }
   [[nodiscard]] static std::string id_of(const psse::Fields& of, std::size_t i);
-  [[nodiscard]] double pu(long double mw) const { return static_cast<double>(mw / base_); }
-  [[nodiscard]] network::Bus& at(int bus) { return network_.buses[static_cast<std::size_t>(bus)]; }
   [[nodiscard]] std::string place(int line) const { return file_ + ":" + std::to_string(line); }
 
   /// One section of a transmission line; `section`: its number, from 1.
@@ -81,24 +66,11 @@ class EpcReader {
     int section, line;
   };
 
-  std::string file_;
-  std::vector<std::string> lines_;
-  RawOptions options_;
-  long double base_ = 0.0L;
   std::vector<Section> sections_;
-  network::Network network_;
-  Problems problems_;
-  Identities identities_{options_, network_, problems_};
-  std::string section_;  ///< section being read
-  std::map<int, int> index_;
   std::vector<double> vsched_;  ///< scheduled voltage of each bus [pu]
   std::map<std::tuple<int, int, std::string>, std::vector<Part>>
       parts_;                                             ///< (ends, circuit) -> line sections
   std::vector<std::tuple<int, int, std::string>> order_;  ///< keys of parts_ in file order
-  std::vector<int> generator_line_, branch_line_;
-  std::vector<network::Device> devices_;
-  std::set<int> stars_;  ///< indices of star-point buses
-  bool units_only_ = false;
 };
 
 }  // namespace swingbank::sim::formats::epc

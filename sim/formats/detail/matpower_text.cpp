@@ -6,17 +6,15 @@
 #include <optional>
 #include <utility>
 
+#include "base/capitals.hpp"
 #include "sim/formats/psse_text.hpp"
 
 namespace swingbank::sim::formats::matpower {
 namespace {
 
+using psse::trimmed;
+
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
 
 struct Statement {
   std::string text;  ///< newlines inside brackets are kept
@@ -139,11 +137,9 @@ class Splitter {
 };
 
 std::optional<long double> number(const std::string& word) {
-  std::string low = word;
-  std::ranges::transform(low, low.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (low == "inf" || low == "+inf") return std::numeric_limits<long double>::infinity();
-  if (low == "-inf") return -std::numeric_limits<long double>::infinity();
+  const std::string upper = capitals(word);
+  if (upper == "INF" || upper == "+INF") return std::numeric_limits<long double>::infinity();
+  if (upper == "-INF") return -std::numeric_limits<long double>::infinity();
   return psse::parse_number(word);
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "sim/formats/psse_text.hpp"
+
 namespace swingbank::sim::formats::pslf {
 
 std::string lower(std::string_view text) {
@@ -10,12 +12,6 @@ std::string lower(std::string_view text) {
   std::ranges::transform(all, all.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return all;
-}
-
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
 }
 
 bool says_nothing(const std::string& line) {
@@ -52,7 +48,7 @@ Line record_at(const std::vector<std::string>& lines, std::size_t& at, std::size
   bool goes_on = true;
   for (bool first = true; goes_on && at < end; ++at) {
     if (says_nothing(lines[at])) continue;
-    std::string text = trimmed(lines[at]);
+    std::string text = psse::trimmed(lines[at]);
     goes_on = text.back() == '/';
     if (goes_on) text.pop_back();
     if (!first) record.starts.push_back(record.tail.size());

@@ -23,8 +23,6 @@ struct Line {
 };
 
 std::string lower(std::string_view text);
-/// Returns the text without leading and trailing blanks and line ends.
-std::string trimmed(std::string_view text);
 /// Returns true if a line is blank or a comment.
 bool says_nothing(const std::string& line);
 /// Splits a text into words, quoted strings and ':'. An unterminated quote becomes a problem.

@@ -1,10 +1,9 @@
 #include "sim/formats/detail/psse_raw.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
-#include "sim/network/consistency.hpp"
+#include "base/capitals.hpp"
 
 namespace swingbank::sim::formats {
 
@@ -100,11 +99,8 @@ std::vector<RawReader::Section> RawReader::sections() const {
 
 void RawReader::read_sections() {
   network_.origin = file_;
-  constexpr std::string_view mark = "\xEF\xBB\xBF";
-  if (!lines_.empty() && lines_[0].starts_with(mark)) {
-    lines_[0].erase(0, mark.size());
+  if (erase_byte_order_mark(lines_))
     network_.remark("a byte-order mark before the first line is ignored", file_ + ":1");
-  }
   if (is_rawx(file_)) return read_json();
   header();
   bool area_behind = false;  // the sections from "area" on are optional
@@ -128,18 +124,13 @@ network::Network RawReader::read() {
 RawSurvey RawReader::survey() {
   units_only_ = true;
   read_sections();
-  return {std::move(network_), std::move(generator_line_), std::move(branch_line_), problems_.list()};
+  return take_survey();
 }
 
 namespace {
 bool is_comment(const std::string& line) {
   const auto first = line.find_first_not_of(" \t");
   return first != std::string::npos && line.compare(first, 2, "@!") == 0;
-}
-std::string capitals_of(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return text;
 }
 std::string without_return(std::string line) {
   while (!line.empty() && line.back() == '\r') line.pop_back();
@@ -240,10 +231,10 @@ std::optional<Record> RawReader::next() {
 
 bool RawReader::left_out(const Section& section) const {
   return section.row == &RawReader::switching_device &&
-         capitals_of(separator_).find("BEGIN TRANSFORMER") != std::string::npos;
+         capitals(separator_).find("BEGIN TRANSFORMER") != std::string::npos;
 }
 bool RawReader::again(const Section& section) const {
-  return capitals_of(separator_).find("BEGIN " + capitals_of(section.name)) != std::string::npos;
+  return capitals(separator_).find("BEGIN " + capitals(section.name)) != std::string::npos;
 }
 
 bool RawReader::section(const Section& section, bool may_be_missing) {
@@ -290,20 +281,11 @@ std::optional<std::string> RawReader::circuit_of(int from, int to, const std::st
       circuit, "", fields);
 }
 
-bool RawReader::status(int value, const char* name, const Fields& fields) {
-  if (value != 0 && value != 1)
-    problems_.add(std::string(name) + " = " + std::to_string(value), fields.where(), "a status is 0 or 1",
-                  "give 1 (in service) or 0 (out of service)");
-  return value == 1;
-}
-
 void RawReader::finish() {
   correct_impedances();
-  network::settle_isolated(network_);
-  network::isolate_idle_stars(network_, stars_);
   if (network_.buses.empty() && problems_.empty())
     problems_.add("no buses", file_, "the bus section is empty", "give a case with buses");
-  network::check_finite(network_, file_, problems_);
+  check_network();
   for (std::size_t i = 0; i < network_.generators.size(); ++i)
     if (network::Generator& g = network_.generators[i]; regulated_[i] != 0 && g.in_service) {
       const auto found = index_.find(std::abs(regulated_[i]));
@@ -313,12 +295,7 @@ void RawReader::finish() {
       else if (found->second != g.bus)
         g.regulated = found->second;
     }
-  if (!problems_.empty()) return;
-  if (!devices_.empty() || !identities_.kept().empty()) network::settle_stars(network_, stars_);
-  network::settle_duplicates(network_, identities_.kept(), options_.repeated == Repeated::voltages, devices_);
-  network::replace_devices(network_, devices_, options_.devices, problems_);
-  network::settle_generators(network_, [&](std::size_t i) { return generator_place(i); });
-  network::settle_islands(network_);
+  complete_network([&](std::size_t i) { return generator_place(i); });
 }
 
 }  // namespace psse

@@ -5,14 +5,9 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
-#include <set>
 #include <span>
 
-#include "sim/formats/detail/identities.hpp"
-#include "sim/formats/psse.hpp"
-#include "sim/formats/psse_text.hpp"
-#include "sim/network/consistency.hpp"
-#include "sim/network/tie.hpp"
+#include "sim/formats/detail/network_reader.hpp"
 
 namespace swingbank::sim::formats::psse {
 
@@ -42,12 +37,11 @@ constexpr Columns columns(int version) {
 }
 
 /// Reader of one .raw or .rawx; each object reads one file.
-class RawReader {
+class RawReader : NetworkReader {
  public:
   /// `name` replaces the file name in messages.
   RawReader(std::vector<std::string> lines, std::string name, const RawOptions& options)
-      : file_(std::move(name)), lines_(std::move(lines)), options_(options) {}
-  RawReader(const RawReader&) = delete;
+      : NetworkReader(std::move(lines), std::move(name), options) {}
   network::Network read();
   RawSurvey survey();
   /// Returns the number of errors found when the file is read as this version, whatever its header says.
@@ -88,12 +82,9 @@ class RawReader {
   void bus(const Record& record);
   void bus_23(const Record& record);
   void bus_shunt(Fields& f, std::size_t first);
-  void raise_impedance(network::Branch& b, const Fields& f);
   void load(const Record& record);
   void fixed_shunt(const Record& record);
   void generator(const Record& record);
-  /// Makes the generator regulate its own bus to the voltage in the file, with a remark.
-  void regulate_own_bus(network::Generator& g, const char* what, const std::string& where);
   void branch(const Record& record);
   void switching_device(const Record& record);
   void transformer(const Record& first);
@@ -121,25 +112,14 @@ class RawReader {
   void device(const std::string& kind, const std::string& name, const Record& record,
               const std::vector<int>& numbers, const std::vector<double>& scheduled = {});
 
-  /// As Identities::bus_index().
-  int find_bus(int number, const Fields& fields) {
-    return identities_.bus_index(index_, number, section_, fields);
-  }
   /// Returns the circuit id of a branch (Identities::id). Branches from A to B and from B to A share their
   /// ids.
   std::optional<std::string> circuit_of(int from, int to, const std::string& circuit, const Fields& fields);
-  bool status(int value, const char* name, const Fields& fields);
-  double pu(long double mw) const { return static_cast<double>(mw / base_); }
-  [[nodiscard]] const network::Bus& at(int bus) const {
-    return network_.buses[static_cast<std::size_t>(bus)];
-  }
 
   struct Codes;  ///< data codes CW, CZ, CM of a transformer
   Codes codes(Fields& head);
   void two_windings(std::span<const Record> rows, int from, int to);
   void three_windings(std::span<const Record> rows, const std::array<int, 3>& ends);
-  int star_point(const std::string& circuit, Fields& impedances, const std::array<int, 3>& ends,
-                 bool in_service);
   /// Stores the reference of a winding to its correction table; the tables are read later.
   void note_table(Fields& winding, std::size_t number, std::size_t branch);
   Complex magnetising(Fields& head, Fields& winding, const Codes& codes, long double mva,
@@ -149,25 +129,13 @@ class RawReader {
   bool part_of_substation(const char* name, const std::function<void(const Record&)>& row);
   void check_substation(const Substation& station);
 
-  std::string file_;
-  std::vector<std::string> lines_;
   std::size_t at_ = 0;     ///< next line
   std::string separator_;  ///< line that ended the last section
   int version_ = 0, forced_ = 0;
   std::size_t most_faults_ = std::numeric_limits<std::size_t>::max();  ///< reading stops after more errors
   Columns columns_{};
-  long double base_ = 100.0L;
-  network::Network network_;
-  Problems problems_;
-  std::map<int, int> index_;
-  std::vector<int> generator_line_, branch_line_;
   std::vector<std::string> places_;  ///< places of the generators in messages, for a .rawx
-  bool units_only_ = false;          ///< true: errors that concern only the network are not reported
-  RawOptions options_;
-  Identities identities_{options_, network_, problems_};
-  std::string section_;  ///< section being read
-  std::vector<network::Device> devices_;
-  std::vector<int> regulated_;  ///< of each generator: number of the regulated bus, 0: its own
+  std::vector<int> regulated_;       ///< of each generator: number of the regulated bus, 0: its own
   struct Correction {
     std::size_t branch;
     int table;
@@ -177,7 +145,6 @@ class RawReader {
   };
   std::vector<Correction> corrections_;
   std::map<int, std::vector<std::pair<double, Complex>>> tables_;  ///< T and factor, ascending
-  std::set<int> stars_;  ///< indices of the star points of three-winding transformers
 };
 
 /// Returns a problem that names the likely version if the file has at least three errors in the version used
