@@ -1,15 +1,8 @@
 #include "sim/library/library.hpp"
 
-#include <algorithm>
-#include <cctype>
+#include "base/capitals.hpp"
 
 namespace swingbank::sim::library {
-namespace {
-bool same_name(std::string_view a, std::string_view b) {
-  return std::ranges::equal(
-      a, b, [](unsigned char x, unsigned char y) { return std::toupper(x) == std::toupper(y); });
-}
-}  // namespace
 
 std::vector<const Effect*> EffectLibrary::all() const {
   std::vector<const Effect*> list;

@@ -58,8 +58,7 @@ std::optional<Problem> place(Plant& plant, Block block, const std::string& where
     if (other.effect == &effect || (other.effect->slot == effect.slot && !is_shared(effect.slot)))
       return taken(*other.effect);
   list.push_back(std::move(block));
-  if (effect.slot != Slot::measurement)
-    std::ranges::stable_sort(list, {}, [](const Block& b) { return b.effect->slot; });
+  if (effect.slot != Slot::measurement) sort_controls(plant);
   return {};
 }
 

@@ -4,6 +4,10 @@
 
 namespace swingbank::sim::plant {
 
+void sort_controls(Plant& plant) {
+  std::ranges::stable_sort(plant.controls, {}, [](const Block& b) { return b.effect->slot; });
+}
+
 std::vector<double> switching_times_of(const Plant& plant) {
   std::vector<double> all;
   for (const Block& block : plant.controls) {

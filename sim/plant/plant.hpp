@@ -53,6 +53,8 @@ struct Consumer {
   Block block;          ///< effect and parameters of the load
 };
 
+/// Sorts the plant's controls by slot, the order of their evaluation.
+void sort_controls(Plant& plant);
 /// Returns the switching times of the plant's effects, sorted [s].
 std::vector<double> switching_times_of(const Plant& plant);
 /// Margin before a segment's end [s]. Effects are evaluated no later than this margin before the end, so that

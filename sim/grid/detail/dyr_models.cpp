@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/capitals.hpp"
 #include "sim/formats/psse_text.hpp"
 #include "sim/library/library.hpp"
 
@@ -18,10 +19,9 @@ constexpr std::array kEndings = {"BL", "OW", "ZN", "AR", "AL"};
 
 /// Returns the effect with this name in a .dyr (case-insensitive), or nullptr.
 const Effect* effect_named(std::string_view model) {
-  const auto same = [](unsigned char a, unsigned char b) { return std::toupper(a) == std::toupper(b); };
   for (const Effect& e : library::compiled_effects())
-    if (!e.dyr_name.empty() && (std::ranges::equal(e.dyr_name, model, same) ||
-                                (e.at_shunt && std::ranges::equal(e.at_shunt->by_id, model, same))))
+    if (!e.dyr_name.empty() &&
+        (same_name(e.dyr_name, model) || (e.at_shunt && same_name(e.at_shunt->by_id, model))))
       return &e;
   return nullptr;
 }
@@ -335,9 +335,6 @@ std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& r
   std::string warning = found.empty() ? compare_reactance(plant, block, raw, where) : "";
   plant.machine = std::move(block);
   return warning;
-}
-void sort_controls(plant::Plant& plant) {
-  std::ranges::stable_sort(plant.controls, {}, [](const plant::Block& b) { return b.effect->slot; });
 }
 std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant) {
   const std::string left_out = block.effect->remark ? block.effect->remark(block.p.data()) : std::string();

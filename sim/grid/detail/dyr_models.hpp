@@ -74,8 +74,6 @@ void take_from_raw(plant::Block& block, const network::Generator& g);
 /// the .dyr differs from ZX, it takes precedence and a warning is returned; else "".
 std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
                   Problems& problems);
-/// Sorts the plant's controls by slot, the order of their evaluation.
-void sort_controls(plant::Plant& plant);
 /// Returns a warning about features that the block's values request and the model lacks, or "".
 std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant);
 /// Returns true if the machine's derivatives depend on Efd, which is determined by evaluating them. It is
