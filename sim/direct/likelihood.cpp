@@ -21,14 +21,16 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 
 /// Cost function of the posterior. Unknowns: free parameters in units of their prior's standard deviation,
 /// then the operating point.
-class Posterior : public ceres::CostFunction {
+class Posterior : public DualCostFunction<Posterior> {
  public:
   Posterior(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
             std::span<const ParameterPrior> free)
-      : machine_(machine), record_(record), p_(p), free_(free) {
-    set_num_residuals(static_cast<int>(innovation_count(record) + free.size()));
-    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(unknowns()));
-  }
+      : DualCostFunction(static_cast<int>(innovation_count(record) + free.size()),
+                         static_cast<int>(free.size()) + kSteady),
+        machine_(machine),
+        record_(record),
+        p_(p),
+        free_(free) {}
   [[nodiscard]] Index unknowns() const { return static_cast<Index>(free_.size()) + kSteady; }
   [[nodiscard]] VectorXd start() const {
     VectorXd z(unknowns());
@@ -51,37 +53,11 @@ class Posterior : public ceres::CostFunction {
     const auto n = static_cast<Index>(free_.size());
     now_ = filter(machine_, record_, parameters(z), {z[n], z[n + 1], z[n + 2], z[n + 3]});
   }
-
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const double* z = blocks[0];
-    const auto values = of<double>(z, -1);
-    std::ranges::copy(values, residuals);
-    bool finite = std::ranges::all_of(values, [](double r) { return std::isfinite(r); });
-    if (!finite || !jacobians || !jacobians[0]) return finite;
-    for (Index first = 0; first < unknowns(); first += kSensitivities) {
-      const auto r = of<D8>(z, first);
-      const Index last = std::min<Index>(first + kSensitivities, unknowns());
-      for (std::size_t i = 0; i < r.size(); ++i)
-        for (Index k = first; k < last; ++k) {
-          const double derivative = r[i].d[static_cast<std::size_t>(k - first)];
-          jacobians[0][static_cast<Index>(i) * unknowns() + k] = derivative;
-          finite = finite && std::isfinite(derivative);
-        }
-    }
-    return finite;
-  }
-
- private:
   /// Returns the innovations, then the prior's residuals, with sensitivities to kSensitivities unknowns from
   /// `first` on.
   template <class T>
   [[nodiscard]] std::vector<T> of(const double* z, Index first) const {
-    const auto at = [&](Index k, double scale) {
-      T x(z[k] * scale);
-      if constexpr (!std::is_same_v<T, double>)
-        if (k >= first && k < first + kSensitivities) x.d[static_cast<std::size_t>(k - first)] = scale;
-      return x;
-    };
+    const auto at = [&](Index k, double scale) { return unknown<T>(z, k, scale, first); };
     std::vector<T> p(p_.begin(), p_.end()), out(static_cast<std::size_t>(num_residuals()));
     const std::size_t own = innovation_count(record_);
     for (std::size_t k = 0; k < free_.size(); ++k) {
@@ -101,6 +77,7 @@ class Posterior : public ceres::CostFunction {
     return out;
   }
 
+ private:
   const Effect& machine_;
   const NoisyRecord& record_;
   std::vector<double> p_;

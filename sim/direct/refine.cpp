@@ -112,46 +112,23 @@ class MachinePlayback {
 
 /// Residuals and their derivatives for Ceres. Unknowns: free parameters, offset, fluxes; each divided by its
 /// scale.
-class Residuals : public ceres::CostFunction {
+class Residuals : public DualCostFunction<Residuals> {
  public:
   Residuals(const MachinePlayback& playback, std::vector<double> p, std::span<const int> free, VectorXd scale)
-      : playback_(playback), p_(std::move(p)), free_(free), scale_(std::move(scale)) {
-    set_num_residuals(static_cast<int>(playback_.outputs()));
-    mutable_parameter_block_sizes()->push_back(static_cast<std::int32_t>(scale_.size()));
-  }
-  bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
-    const auto values = of<double>(blocks[0], -1);
-    std::ranges::copy(values, residuals);
-    bool finite = std::ranges::all_of(values, [](double r) { return std::isfinite(r); });
-    if (!jacobians || !jacobians[0]) return finite;
-    const Index width = scale_.size();
-    for (Index first = 0; first < width; first += kSensitivities) {
-      const auto r = of<D8>(blocks[0], first);
-      for (Index k = first; k < std::min<Index>(first + kSensitivities, width); ++k)
-        for (std::size_t i = 0; i < r.size(); ++i) {
-          const double derivative = r[i].d[static_cast<std::size_t>(k - first)];
-          jacobians[0][static_cast<Index>(i) * width + k] = derivative;
-          finite = finite && std::isfinite(derivative);
-        }
-    }
-    return finite;
-  }
+      : DualCostFunction(static_cast<int>(playback.outputs()), static_cast<int>(scale.size())),
+        playback_(playback),
+        p_(std::move(p)),
+        free_(free),
+        scale_(std::move(scale)) {}
   [[nodiscard]] std::vector<double> parameters(const VectorXd& z) const {
     std::vector<double> p = p_;
     for (std::size_t k = 0; k < free_.size(); ++k)
       p[static_cast<std::size_t>(free_[k])] = z[static_cast<Index>(k)] * scale_[static_cast<Index>(k)];
     return p;
   }
-
- private:
   template <class T>
   std::vector<T> of(const double* z, Index first) const {
-    const auto at = [&](Index k) {
-      T x(z[k] * scale_[k]);
-      if constexpr (!std::is_same_v<T, double>)
-        if (k >= first && k < first + kSensitivities) x.d[static_cast<std::size_t>(k - first)] = scale_[k];
-      return x;
-    };
+    const auto at = [&](Index k) { return unknown<T>(z, k, scale_[k], first); };
     std::vector<T> p(p_.begin(), p_.end()), flux;
     const auto n = static_cast<Index>(free_.size());
     for (Index k = 0; k < n; ++k) p[static_cast<std::size_t>(free_[static_cast<std::size_t>(k)])] = at(k);
@@ -159,6 +136,7 @@ class Residuals : public ceres::CostFunction {
     return playback_.residuals<T>(p, at(n), flux);
   }
 
+ private:
   const MachinePlayback& playback_;
   std::vector<double> p_;
   std::span<const int> free_;
