@@ -67,6 +67,17 @@ template <class T>
 inline T square(const T& a) {
   return a * a;
 }
+/// Returns |re + j im|^2. The added 1e-24 keeps the derivative of the magnitude finite at 0.
+template <class T>
+inline T squared_magnitude(const T& re, const T& im) {
+  return re * re + im * im + T(1e-24);
+}
+/// Returns |re + j im|.
+template <class T>
+inline T magnitude(const T& re, const T& im) {
+  using std::sqrt;
+  return sqrt(squared_magnitude(re, im));
+}
 /// Returns max(a, 0).
 template <class T>
 inline T positive_part(const T& a) {

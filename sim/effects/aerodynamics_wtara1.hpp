@@ -2,12 +2,12 @@
 // WTARA1: aerodynamics of a wind turbine, linear in the pitch angle.
 
 #include "sim/core/effect.hpp"
-#include "sim/effects/detail/electrical_control.hpp"
+#include "sim/effects/detail/renewable.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::aerodynamics_wtara1 {
 
 struct Model {
-  using Core = renewable::ElectricalControl;
   static constexpr std::string_view name = "WTARA1", title = "aerodynamics of a wind turbine, type A",
                                     source =
                                         "WECC (2014), Wind plant dynamic modeling guidelines, WTGAR_A; "
@@ -27,7 +27,8 @@ struct Model {
   enum C { ka, theta0, p0, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    Core::check_signs(parameters, p, {Ka}, {}, where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.refuse_negative({Ka});
   }
   static std::string_view unphysical(const double*) { return ""; }
 

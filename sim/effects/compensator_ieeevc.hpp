@@ -1,9 +1,9 @@
 #pragma once
 // IEEEVC: load compensation of the regulated voltage.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::compensator_ieeevc {
 
@@ -28,11 +28,11 @@ struct Model {
   enum C { r, x_, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     for (int i : {RC, XC})
-      if (!(p[i] > -1.0 && p[i] < 1.0))
-        problems.add(fmt::format("{} = {:g} pu", parameters[i].symbol, p[i]), where,
-                     "at rated current the compensated voltage would vanish or double",
-                     "give it on the machine's base, between -1 and 1 pu");
+      values.refuse(!(p[i] > -1.0 && p[i] < 1.0), i,
+                    "at rated current the compensated voltage would vanish or double",
+                    "give it on the machine's base, between -1 and 1 pu");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -7,6 +7,7 @@
 #include "sim/effects/detail/controlled_current.hpp"
 #include "sim/effects/detail/limited_lead_lag.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::converter_csvgn1 {
 
@@ -81,17 +82,10 @@ struct Model : shared::ControlledCurrent<Model> {
   enum M { voltage, scratch };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-    };
-    for (const int i : {K, T5, Tfreq})
-      if (!(p[i] > 0)) problems.add(says(i), where, "CSVGN1 divides by it", "give a value > 0");
-    for (const int i : {T1, T2, T3, T4, CBASE})
-      if (!(p[i] >= 0))
-        problems.add(says(i), where, "times and ratings cannot be negative", "give a value >= 0");
-    if (!(p[VMAX] > p[VMIN]))
-      problems.add(says(VMAX) + " with " + says(VMIN), where, "the range of the regulator must not be empty",
-                   "give VMAX > VMIN");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_divisors({K, T5, Tfreq});
+    values.refuse_negative({T1, T2, T3, T4, CBASE}, "times and ratings cannot be negative");
+    values.require_above(VMAX, VMIN, "the range of the regulator must not be empty");
   }
 
   template <class T>
@@ -118,7 +112,7 @@ struct Model : shared::ControlledCurrent<Model> {
   template <class T>
   static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
     using std::sqrt;
-    const T squared = square_of_voltage(s);
+    const T squared = squared_magnitude(s.Vr, s.Vi);
     m[voltage] = sqrt(squared);
     terminal(c, x, squared, s);
   }

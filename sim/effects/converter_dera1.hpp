@@ -13,11 +13,11 @@
 #include "sim/effects/detail/lasting.hpp"
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::converter_dera1 {
 
 struct Model : shared::ControlledCurrent<Model> {
-  using Core = renewable::ElectricalControl;  // for its checks
   static constexpr std::string_view
       name = "DERA1",
       title = "aggregated distributed generation, type A",
@@ -264,14 +264,14 @@ struct Model : shared::ControlledCurrent<Model> {
   }
   template <class T>
   static void current(const T*, const T* x, T*, Signals<T>& s) {
-    const T per = T(1.0) / renewable::at_least_small(magnitude(s));
+    const T per = T(1.0) / renewable::at_least_small(magnitude(s.Vr, s.Vi));
     s.Ir = (x[Ip] * s.Vr + x[Iq] * s.Vi) * per;
     s.Ii = (x[Ip] * s.Vi - x[Iq] * s.Vr) * per;
   }
   template <class T>
   static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
-    m[voltage] = magnitude(s);
-    terminal(c, x, square_of_voltage(s), s);
+    m[voltage] = magnitude(s.Vr, s.Vi);
+    terminal(c, x, squared_magnitude(s.Vr, s.Vi), s);
     s.Pord = x[Pord];
   }
   template <class T>
@@ -391,25 +391,18 @@ std::string Model::steady(const T*, T* c, Signals<T>& s, T* x) {
 }
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  Core::check_flags(parameters, p, {pfFlag, freqFlag, pqFlag, genFlag, vtripFlag, ftripFlag}, where,
-                    problems);
-  Core::check_times(parameters, p, {Trv, Tp, Tiq, Tpord, Tv, tvl0, tvl1, tvh0, tvh1, tfl, tfh}, where,
-                    problems);
-  Core::check_ranges(parameters, p, {{femax, femin}, {Pmax, Pmin}, {dPmax, dPmin}, {Iqh1, Iql1}}, where,
-                     problems);
-  Core::check_signs(parameters, p, {dbd2, fdbd2, Kqv, Ddn, Dup, Kpg, Kig, dPmax}, {dbd1, fdbd1, dPmin}, where,
-                    problems);
-  for (const int i : {Trf, Tg, Imax, rrpwr})
-    if (!(p[i] > 0))
-      problems.add(Core::value(parameters, p, i), where,
-                   "the equations divide by it, or are constant without it", "give a value > 0");
-  if (!(p[Vrfrac] >= 0 && p[Vrfrac] <= 1))
-    problems.add(Core::value(parameters, p, Vrfrac), where, "it is a fraction", "give 0 to 1");
+  const shared::ValueCheck values(name, parameters, p, where, problems);
+  values.require_switches({pfFlag, freqFlag, pqFlag, genFlag, vtripFlag, ftripFlag});
+  values.require_times({Trv, Tp, Tiq, Tpord, Tv, tvl0, tvl1, tvh0, tvh1, tfl, tfh});
+  values.require_ranges({{femax, femin}, {Pmax, Pmin}, {dPmax, dPmin}, {Iqh1, Iql1}});
+  values.refuse_negative({dbd2, fdbd2, Kqv, Ddn, Dup, Kpg, Kig, dPmax});
+  values.refuse_positive({dbd1, fdbd1, dPmin});
+  values.require_positive({Trf, Tg, Imax, rrpwr}, "the equations divide by it, or are constant without it");
+  values.refuse(!(p[Vrfrac] >= 0 && p[Vrfrac] <= 1), Vrfrac, "it is a fraction", "give 0 to 1");
   if (p[vtripFlag] == 0) return;
   for (const auto& [high, low] : {std::pair<int, int>{Vl1, Vl0}, {Vh0, Vh1}, {Vh1, Vl1}})
-    if (!(p[high] > p[low]))
-      problems.add(Core::value(parameters, p, high) + " with " + Core::value(parameters, p, low), where,
-                   "units trip gradually between them", "give Vl0 < Vl1 < Vh1 < Vh0, or vtripFlag = 0");
+    values.refuse(!(p[high] > p[low]), values.text(high, low), "units trip gradually between them",
+                  "give Vl0 < Vl1 < Vh1 < Vh0, or vtripFlag = 0");
 }
 
 }  // namespace swingbank::sim::effects::converter_dera1

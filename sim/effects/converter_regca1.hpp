@@ -2,11 +2,11 @@
 // REGCA1: converter of a wind or photovoltaic plant or a battery, a controlled current.
 #include <fmt/format.h>
 
-
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/controlled_current.hpp"
 #include "sim/effects/detail/renewable.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::converter_regca1 {
 
@@ -133,7 +133,7 @@ struct Model : shared::ControlledCurrent<Model> {
   }
   template <class T>
   static void current(const T* c, const T* x, T*, Signals<T>& s) {
-    const T V = magnitude(s);
+    const T V = magnitude(s.Vr, s.Vi);
     const T active = renewable::smaller(x[Ip], low_voltage_limit(c, x, V)) * gain(c, V);
     const T reactive = renewable::larger(x[Iq] - c[khv] * positive_part(V - c[volim]), c[iolim]);
     const T per = T(1.0) / renewable::at_least_small(V);
@@ -142,7 +142,7 @@ struct Model : shared::ControlledCurrent<Model> {
   }
   template <class T>
   static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
-    m[voltage] = magnitude(s);
+    m[voltage] = magnitude(s.Vr, s.Vi);
     m[limit] = low_voltage_limit(c, x, m[voltage]);
     terminal(c, x, m[voltage] * m[voltage], s);
     s.Pext = s.dPref;
@@ -163,7 +163,7 @@ struct Model : shared::ControlledCurrent<Model> {
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
-    const T V = magnitude(s), P = s.Vr * s.Ir + s.Vi * s.Ii, Q = s.Vi * s.Ir - s.Vr * s.Ii;
+    const T V = magnitude(s.Vr, s.Vi), P = s.Vr * s.Ir + s.Vi * s.Ii, Q = s.Vi * s.Ir - s.Vr * s.Ii;
     const T share = gain(c, V), drawn = c[khv] * positive_part(V - c[volim]);
     if (!(value_of(share) > 0.0))
       return fmt::format("at V = {:.4f} pu it delivers no active current: Lvpnt0 = {:.4f} pu", value_of(V),
@@ -190,23 +190,14 @@ struct Model : shared::ControlledCurrent<Model> {
 };
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto value = [&](int i) {
-    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i],
-                       parameters[i].is_code() ? "" : parameters[i].unit);
-  };
-  const auto bad = [&](bool wrong, const std::string& what, const char* why, const char* remedy) {
-    if (wrong) problems.add(what, where, why, remedy);
-  };
-  bad(p[Lvplsw] != 0 && p[Lvplsw] != 1, value(Lvplsw), "it is a switch", "give 0 or 1");
-  for (const int i : {Tg, Tfreq, Rrpwr})
-    bad(!(p[i] > 0), value(i), "the equations divide by it, or are constant without it", "give a value > 0");
-  bad(!(p[Tfltr] >= 0), value(Tfltr), "a time constant cannot be negative", "give 0 for none, or more");
-  bad(!(p[Brkpt] > p[Zerox]), value(Brkpt) + " with " + value(Zerox), "LVPL must rise with the voltage",
-      "give Brkpt > Zerox");
-  bad(!(p[Lvpnt1] > p[Lvpnt0]), value(Lvpnt1) + " with " + value(Lvpnt0), "G must rise with the voltage",
-      "give Lvpnt1 > Lvpnt0");
-  bad(!(p[Iqrmax] >= 0), value(Iqrmax), "it is the fastest rise", "give a value >= 0");
-  bad(!(p[Iqrmin] <= 0), value(Iqrmin), "it is the fastest fall", "give a value <= 0");
+  const shared::ValueCheck values(name, parameters, p, where, problems);
+  values.require_switches({Lvplsw});
+  values.require_positive({Tg, Tfreq, Rrpwr}, "the equations divide by it, or are constant without it");
+  values.require_times({Tfltr});
+  values.require_above(Brkpt, Zerox, "LVPL must rise with the voltage");
+  values.require_above(Lvpnt1, Lvpnt0, "G must rise with the voltage");
+  values.refuse_negative({Iqrmax}, "it is the fastest rise");
+  values.refuse_positive({Iqrmin}, "it is the fastest fall");
 }
 
 }  // namespace swingbank::sim::effects::converter_regca1

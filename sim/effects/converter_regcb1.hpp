@@ -82,7 +82,7 @@ struct Model : shared::BehindImpedance<Model> {
   }
   template <class T>
   static void current(const T* c, const T* x, T*, Signals<T>& s) {
-    const T V = magnitude(s);
+    const T V = magnitude(s.Vr, s.Vi);
     T d, q;
     inner_voltage(c, x, V, d, q);
     const auto lags = c[iTe] > T(0.0);
@@ -95,9 +95,9 @@ struct Model : shared::BehindImpedance<Model> {
   }
   template <class T>
   static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
-    m[voltage] = magnitude(s);
+    m[voltage] = magnitude(s.Vr, s.Vi);
     inner_voltage(c, x, m[voltage], m[target_d], m[target_q]);
-    terminal(c, x, square_of_voltage(s), s);
+    terminal(c, x, squared_magnitude(s.Vr, s.Vi), s);
     s.Pext = s.dPref;
     s.Qext = s.dVref;
     s.Paero = s.Te;
@@ -111,7 +111,7 @@ struct Model : shared::BehindImpedance<Model> {
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
-    const T V = magnitude(s);
+    const T V = magnitude(s.Vr, s.Vi);
     T p, q;
     if (auto why = steady_commands(c, V, p, q, s, x); !why.empty()) return why;
     x[Ed] = V;

@@ -7,6 +7,7 @@
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/behind_impedance.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::converter_regcc1 {
 
@@ -143,8 +144,10 @@ struct Model : shared::BehindImpedance<Model> {
   enum M { voltage, scratch };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     check_common(p, where, problems);
-    Core::check_signs(parameters, p, {Kip, Kii, Kppll, Kipll, wmax, Vpllfrz}, {wmin}, where, problems);
+    values.refuse_negative({Kip, Kii, Kppll, Kipll, wmax, Vpllfrz});
+    values.refuse_positive({wmin});
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {
@@ -165,7 +168,7 @@ struct Model : shared::BehindImpedance<Model> {
     T p, reactive;
     impedance_currents(c, x[Ed] - frame.along(s.Vr, s.Vi), x[Eq] - frame.across(s.Vr, s.Vi), p, reactive);
     const auto lags = c[iTe] > T(0.0);
-    p = select(lags, p, (c[kip] * lagged_active(c, x, magnitude(s)) + x[Sp]) * c[closed]);
+    p = select(lags, p, (c[kip] * lagged_active(c, x, magnitude(s.Vr, s.Vi)) + x[Sp]) * c[closed]);
     reactive = select(lags, reactive, (c[kip] * x[Iq] + x[Sq]) * c[closed]);
     within(c, p, reactive);
     s.Ir = p * frame.cosine + reactive * frame.sine;
@@ -173,8 +176,8 @@ struct Model : shared::BehindImpedance<Model> {
   }
   template <class T>
   static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
-    m[voltage] = magnitude(s);
-    terminal(c, x, square_of_voltage(s), s);
+    m[voltage] = magnitude(s.Vr, s.Vi);
+    terminal(c, x, squared_magnitude(s.Vr, s.Vi), s);
     s.Pext = s.dPref;
     s.Qext = s.dVref;
     s.Paero = s.Te;
@@ -196,7 +199,7 @@ struct Model : shared::BehindImpedance<Model> {
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
     using std::atan2;
-    const T V = magnitude(s);
+    const T V = magnitude(s.Vr, s.Vi);
     T p, q;
     if (auto why = steady_commands(c, V, p, q, s, x); !why.empty()) return why;
     x[Sp] = p;

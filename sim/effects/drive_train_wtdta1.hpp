@@ -3,12 +3,12 @@
 
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
-#include "sim/effects/detail/electrical_control.hpp"
+#include "sim/effects/detail/renewable.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::drive_train_wtdta1 {
 
 struct Model {
-  using Core = renewable::ElectricalControl;
   static constexpr std::string_view name = "WTDTA1", title = "drive train of a wind turbine, type A",
                                     source =
                                         "WECC (2014), Wind plant dynamic modeling guidelines, WTGT_A; "
@@ -40,14 +40,13 @@ struct Model {
                                      {"twist", "rad", "twist of the shaft"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (!(p[H] > 0)) problems.add(Core::value(parameters, p, H), where, "a shaft has inertia", "give H > 0");
-    if (!(p[Htfrac] >= 0 && p[Htfrac] < 1))
-      problems.add(Core::value(parameters, p, Htfrac), where, "the generator needs a part of the inertia",
-                   "give 0 for one mass, or a part below 1");
-    if (p[Htfrac] > 0 && !(p[Freq1] > 0))
-      problems.add(Core::value(parameters, p, Freq1), where, "the shaft between the masses needs a stiffness",
-                   "give Freq1 > 0, or Htfrac = 0 for one mass");
-    Core::check_signs(parameters, p, {DAMP, Dshaft}, {}, where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_positive({H}, "a shaft has inertia");
+    values.refuse(!(p[Htfrac] >= 0 && p[Htfrac] < 1), Htfrac, "the generator needs a part of the inertia",
+                  "give 0 for one mass, or a part below 1");
+    values.refuse(p[Htfrac] > 0 && !(p[Freq1] > 0), Freq1, "the shaft between the masses needs a stiffness",
+                  "give Freq1 > 0, or Htfrac = 0 for one mass");
+    values.refuse_negative({DAMP, Dshaft});
   }
   static std::string_view unphysical(const double*) { return ""; }
 

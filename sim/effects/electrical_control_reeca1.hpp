@@ -9,6 +9,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_records.hpp"
 #include "sim/effects/detail/record.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::electrical_control_reeca1 {
 
@@ -106,9 +107,10 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
   }();
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    renewable::check_electrical<Model>(parameters, p, where, problems);
-    Core::check_flags(parameters, p, {PFLAG}, where, problems);
-    Core::check_times(parameters, p, {Thld2}, where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    renewable::check_electrical<Model>(values);
+    values.require_switches({PFLAG});
+    values.require_times({Thld2});
   }
   static std::string_view unphysical(const double*) { return ""; }
   static std::string remark(const double* p) { return Core::remote(p[RemoteBus]); }

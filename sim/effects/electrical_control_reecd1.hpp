@@ -9,6 +9,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_records.hpp"
 #include "sim/effects/detail/record.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::electrical_control_reecd1 {
 
@@ -143,14 +144,13 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
   }();
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    renewable::check_electrical<Model>(parameters, p, where, problems);
-    Core::check_flags(parameters, p, {PFLAG, VCMPFLAG}, where, problems);
-    Core::check_times(parameters, p, {Thld2, Tr1, Tblk}, where, problems);
-    Core::check_ranges(parameters, p, {{Vblkh, Vblkl}}, where, problems);
-    for (int i = Vq1 + 1; i < Rc; i += 2) Core::check_signs(parameters, p, {i}, {}, where, problems);
-    if (!(p[Ke] >= 0 && p[Ke] <= 1))
-      problems.add(Core::value(parameters, p, Ke), where, "it is a fraction of the upper limit",
-                   "give 0 to 1");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    renewable::check_electrical<Model>(values);
+    values.require_switches({PFLAG, VCMPFLAG});
+    values.require_times({Thld2, Tr1, Tblk});
+    values.require_ranges({{Vblkh, Vblkl}});
+    for (int i = Vq1 + 1; i < Rc; i += 2) values.refuse_negative({i});
+    values.refuse(!(p[Ke] >= 0 && p[Ke] <= 1), Ke, "it is a fraction of the upper limit", "give 0 to 1");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/effects/detail/alternator_rectifier.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_esac1a {
 
@@ -47,10 +48,9 @@ struct Model : shared::AlternatorRectifier<Model> {
       {"rate", "pu", "state of the rate feedback", kErrorWeight, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     AlternatorRectifier::check(p, where, problems);
-    if (!(p[VRMAX] > p[VRMIN]))
-      problems.add(fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[VRMAX], p[VRMIN]), where,
-                   "the range of the alternator's field must not be empty", "give VRMAX > VRMIN");
+    values.require_above(VRMAX, VRMIN, "the range of the alternator's field must not be empty");
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

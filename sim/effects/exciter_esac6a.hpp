@@ -1,12 +1,13 @@
 #pragma once
 // ESAC6A: brushless exciter with lead-lag regulators fed from the terminal and a field-current limiter.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/alternator.hpp"
 #include "sim/effects/detail/limited_lead_lag.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_esac6a {
 
@@ -129,20 +130,13 @@ struct Model : shared::Alternator<Model> {
       {.name = "Ve", .unit = "pu", .meaning = "voltage behind the rectifier", .low = none, .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     check_alternator(p, where, problems);
-    bad(!(p[KA] > 0), says(KA), "an exciter needs a gain", "give KA > 0");
-    for (int i : {TR, TA, TB, TH})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
-    for (int i : {KH, VHMAX})
-      bad(!(p[i] >= 0), says(i), "it only reduces the exciter's voltage", "give a value >= 0");
-    for (const auto& [most, least] : {std::pair{VAMAX, VAMIN}, {VRMAX, VRMIN}})
-      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu",
-          "the range must not be empty",
-          fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
+    values.require_positive({KA}, "an exciter needs a gain");
+    values.require_times({TR, TA, TB, TH});
+    values.refuse_negative({KH, VHMAX}, "it only reduces the exciter's voltage");
+    values.require_above(VAMAX, VAMIN);
+    values.require_above(VRMAX, VRMIN);
   }
 
   template <class T>
@@ -186,17 +180,8 @@ struct Model : shared::Alternator<Model> {
     if (std::string why = steady_alternator(p, c, s, x, Vfe); !why.empty()) return why;
     x[limiter] = taken(c, Vfe);
     x[first] = x[second] = Vfe + x[limiter];
-    const auto outside = [](const char* what, double is, double least, double most) {
-      return is < least || is > most
-                 ? fmt::format("{} = {:.4f} pu is needed and its limits are {:.4f}, {:.4f} pu", what, is,
-                               least, most)
-                 : std::string();
-    };
-    const double v = value_of(s.V);
-    if (auto why = outside("Va", value_of(x[second]), value_of(p[VAMIN]), value_of(p[VAMAX])); !why.empty())
-      return why;
-    if (auto why = outside("Vr", value_of(Vfe), v * value_of(p[VRMIN]), v * value_of(p[VRMAX])); !why.empty())
-      return why;
+    if (auto why = shared::outside("Va", x[second], p[VAMIN], p[VAMAX]); !why.empty()) return why;
+    if (auto why = shared::outside("Vr", Vfe, s.V * p[VRMIN], s.V * p[VRMAX]); !why.empty()) return why;
     c[Vref] = x[first] / p[KA] + s.Vc - s.Vs - s.Vlimiter;
     return {};
   }

@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_esst1a {
 
@@ -122,23 +122,18 @@ struct Model {
       {"rate", "pu", "state of the rate feedback", 1.0, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    bad(p[UEL] != 1 && p[UEL] != 2 && p[UEL] != 3, says(UEL), "it is a code", "give 1, 2 or 3");
-    bad(p[VOS] != 1 && p[VOS] != 2, says(VOS), "it is a code", "give 1 or 2");
-    bad(!(p[KA] > 0), says(KA), "an exciter needs a gain", "give KA > 0");
-    for (int i : {TR, TB, TB1, TA})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
-    shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
-    bad(p[KF] != 0 && !(p[TA] > 0), says(KF) + " with " + says(TA) + " s",
-        "the rate feedback would form an algebraic loop", "give TA > 0, or KF = 0");
-    bad(!(p[KLR] >= 0), says(KLR), "it would raise the field current", "give KLR >= 0");
-    for (const auto& [most, least] : {std::pair{VIMAX, VIMIN}, {VAMAX, VAMIN}, {VRMAX, VRMIN}})
-      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu",
-          "the range must not be empty",
-          fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.refuse(p[UEL] != 1 && p[UEL] != 2 && p[UEL] != 3, UEL, "it is a code", "give 1, 2 or 3");
+    values.refuse(p[VOS] != 1 && p[VOS] != 2, VOS, "it is a code", "give 1 or 2");
+    values.require_positive({KA}, "an exciter needs a gain");
+    values.require_times({TR, TB, TB1, TA});
+    values.require_time(TF, p[KF] != 0, "KF = 0");
+    values.refuse(p[KF] != 0 && !(p[TA] > 0), values.text(KF, TA),
+                  "the rate feedback would form an algebraic loop", "give TA > 0, or KF = 0");
+    values.refuse_negative({KLR}, "it would raise the field current");
+    values.require_above(VIMAX, VIMIN);
+    values.require_above(VAMAX, VAMIN);
+    values.require_above(VRMAX, VRMIN);
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -6,6 +6,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/compound_source.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_esst3a {
 
@@ -115,21 +116,16 @@ struct Model {
        .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    for (const int i : {KA, KM}) bad(!(p[i] > 0), says(i), "an exciter needs a gain", "give a value > 0");
-    for (const int i : {KG, KC})
-      bad(!(p[i] >= 0), says(i), "the loop would be unstable", "give a value >= 0");
-    for (const int i : {TR, TB, TA, TM})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
-    bad(!(p[KP] > 0) && !(p[KI] > 0), fmt::format("{} with {}", says(KP), says(KI)),
-        "the source would deliver no voltage", "give KP > 0 or KI > 0");
-    bad(!(p[VBMAX] > 0), says(VBMAX) + " pu", "the source would deliver no voltage", "give VBMAX > 0");
-    for (const auto& [high, low] : {std::pair{VIMAX, VIMIN}, {VRMAX, VRMIN}, {VMMAX, VMMIN}})
-      bad(!(p[high] > p[low]), says(high) + " pu with " + says(low) + " pu", "the range must not be empty",
-          fmt::format("give {} > {}", parameters[high].symbol, parameters[low].symbol));
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_positive({KA, KM}, "an exciter needs a gain");
+    values.refuse_negative({KG, KC}, "the loop would be unstable");
+    values.require_times({TR, TB, TA, TM});
+    values.refuse(!(p[KP] > 0) && !(p[KI] > 0), values.text(KP, KI), "the source would deliver no voltage",
+                  "give KP > 0 or KI > 0");
+    values.require_positive({VBMAX}, "the source would deliver no voltage");
+    values.require_above(VIMAX, VIMIN);
+    values.require_above(VRMAX, VRMIN);
+    values.require_above(VMMAX, VMMIN);
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -1,12 +1,13 @@
 #pragma once
 // ESST4B: static excitation from a potential or compound source, two PI regulators.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/compound_source.hpp"
 #include "sim/effects/detail/limited_integral.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_esst4b {
 
@@ -98,24 +99,17 @@ struct Model {
                                       .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    for (int i : {KPR, KIR, KPM, KIM, KG, KC})
-      bad(!(p[i] >= 0), says(i), "the loop would be unstable", "give a value >= 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.refuse_negative({KPR, KIR, KPM, KIM, KG, KC}, "the loop would be unstable");
     for (const auto& [proportional, integral] : {std::pair{KPR, KIR}, {KPM, KIM}})
-      bad(p[proportional] == 0.0 && p[integral] == 0.0,
-          fmt::format("{} with {}", says(proportional), says(integral)), "a regulator needs a gain",
-          "give one of them");
-    for (int i : {TR, TA})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
-    bad(!(p[KP] > 0) && !(p[KI] > 0), fmt::format("{} with {}", says(KP), says(KI)),
-        "the source would deliver no voltage", "give KP > 0 or KI > 0");
-    bad(!(p[VBMAX] > 0), says(VBMAX) + " pu", "the source would deliver no voltage", "give VBMAX > 0");
-    for (const auto& [most, least] : {std::pair{VRMAX, VRMIN}, {VMMAX, VMMIN}})
-      bad(!(p[most] > p[least]), fmt::format("{} pu with {} pu", says(most), says(least)),
-          "the range of the regulator must not be empty", "give an upper limit above the lower one");
+      values.refuse(p[proportional] == 0.0 && p[integral] == 0.0, values.text(proportional, integral),
+                    "a regulator needs a gain", "give one of them");
+    values.require_times({TR, TA});
+    values.refuse(!(p[KP] > 0) && !(p[KI] > 0), values.text(KP, KI), "the source would deliver no voltage",
+                  "give KP > 0 or KI > 0");
+    values.require_positive({VBMAX}, "the source would deliver no voltage");
+    values.require_above(VRMAX, VRMIN, "the range of the regulator must not be empty");
+    values.require_above(VMMAX, VMMIN, "the range of the regulator must not be empty");
   }
   static std::string_view unphysical(const double*) { return ""; }
 
@@ -157,14 +151,8 @@ struct Model {
     const auto inner_integrates = p[KIM] > zero, outer_integrates = p[KIR] > zero;
     x[xm] = select(inner_integrates, inner, zero);
     x[Va] = p[KG] * s.Efd + select(inner_integrates, zero, inner / select(inner_integrates, one, p[KPM]));
-    const auto outside = [](const char* what, const T& value, const T& least, const T& most) {
-      const double v = value_of(value), low = value_of(least), high = value_of(most);
-      return v < low || v > high ? fmt::format("{} = {:.4f} pu is needed and its limits are {:g}, {:g} pu",
-                                               what, v, low, high)
-                                 : std::string();
-    };
-    if (auto why = outside("Vmr", inner, p[VMMIN], p[VMMAX]); !why.empty()) return why;
-    if (auto why = outside("Vr", x[Va], p[VRMIN], p[VRMAX]); !why.empty()) return why;
+    if (auto why = shared::outside("Vmr", inner, p[VMMIN], p[VMMAX]); !why.empty()) return why;
+    if (auto why = shared::outside("Vr", x[Va], p[VRMIN], p[VRMAX]); !why.empty()) return why;
     x[xr] = select(outer_integrates, x[Va], zero);
     x[Vm] = s.Vc;
     const T e = select(outer_integrates, zero, x[Va] / select(outer_integrates, one, p[KPR]));

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/effects/detail/alternator_rectifier.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_exac2 {
 
@@ -66,18 +67,13 @@ struct Model : shared::AlternatorRectifier<Model> {
       {"rate", "pu", "state of the rate feedback", kErrorWeight, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     AlternatorRectifier::check(p, where, problems);
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g}", parameters[static_cast<std::size_t>(i)].symbol, p[i]);
-    };
-    if (!(p[VRMAX] > p[VRMIN]))
-      problems.add(says(VRMAX) + " pu with " + says(VRMIN) + " pu", where,
-                   "the range of the alternator's field must not be empty", "give VRMAX > VRMIN");
-    if (!(p[KB] > 0)) problems.add(says(KB), where, "an exciter needs a gain", "give KB > 0");
-    if (!(p[KL] > 0))
-      problems.add(says(KL), where, "the limiter's gate would stay at zero",
-                   "give KL > 0, and a large VLR for no limiter");
-    if (!(p[KH] >= 0)) problems.add(says(KH), where, "the inner loop would be unstable", "give KH >= 0");
+    values.require_above(VRMAX, VRMIN, "the range of the alternator's field must not be empty");
+    values.require_positive({KB}, "an exciter needs a gain");
+    values.refuse(!(p[KL] > 0), KL, "the limiter's gate would stay at zero",
+                  "give KL > 0, and a large VLR for no limiter");
+    values.refuse_negative({KH}, "the inner loop would be unstable");
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

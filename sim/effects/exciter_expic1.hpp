@@ -1,13 +1,14 @@
 #pragma once
 // EXPIC1: excitation system with a PI regulator, a bridge fed by terminal voltage and current, and an
 // optional exciter.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/compound_source.hpp"
 #include "sim/effects/detail/limited_integral.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_expic1 {
 
@@ -222,15 +223,9 @@ struct Model {
     const T VB = supply(c, s), E0 = steady_input(c, s.Efd);
     if (auto why = Feed::refuses(VB, s); !why.empty()) return why;
     const T vr = E0 / VB;
-    const auto outside = [](const char* what, const T& is, const T& low, const T& high) {
-      return value_of(is) < value_of(low) || value_of(is) > value_of(high)
-                 ? fmt::format("{} = {:.4f} pu is needed and its limits are {:g}, {:g} pu", what,
-                               value_of(is), value_of(low), value_of(high))
-                 : std::string();
-    };
-    if (auto why = outside("E0", E0, c[efdmin], c[efdmax]); !why.empty()) return why;
-    if (auto why = outside("Vr", vr, c[vrmin], c[vrmax]); !why.empty()) return why;
-    if (auto why = outside("the PI's output", vr, c[vr2], c[vr1]); !why.empty()) return why;
+    if (auto why = shared::outside("E0", E0, c[efdmin], c[efdmax]); !why.empty()) return why;
+    if (auto why = shared::outside("Vr", vr, c[vrmin], c[vrmax]); !why.empty()) return why;
+    if (auto why = shared::outside("the PI's output", vr, c[vr2], c[vr1]); !why.empty()) return why;
     x[Vm] = s.Vc;
     x[integral] = x[lag1] = x[lag2] = x[rate] = vr;
     x[rate_lag] = T(0.0);
@@ -241,28 +236,21 @@ struct Model {
 };
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-  };
-  const auto says = [&](int i) {
-    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-  };
-  bad(!(p[KA] > 0), says(KA), "an exciter needs a gain", "give KA > 0");
-  for (const int i : {TR, TA1, TA2, TA3, TA4, TF1, TF2, TE})
-    bad(!(p[i] >= 0), says(i), "a time constant cannot be negative", "give a value >= 0");
-  for (const int i : {KF, KP, KI, KC, SE1, SE2})
-    bad(!(p[i] >= 0), says(i), "it cannot be negative", "give a value >= 0");
-  bad(p[E1] == p[E2] && p[SE1] != p[SE2], says(E1) + " with the same E2",
-      "one voltage cannot have two saturation factors", "give two points");
-  bad(p[KF] > 0 && p[TF1] == 0 && p[TF2] == 0, says(KF) + " with " + says(TF1) + " and " + says(TF2),
-      "a derivative needs a lag", "give TF1 > 0, or KF = 0 for no feedback");
+  const shared::ValueCheck values(name, parameters, p, where, problems);
+  values.require_positive({KA}, "an exciter needs a gain");
+  values.require_times({TR, TA1, TA2, TA3, TA4, TF1, TF2, TE});
+  values.refuse_negative({KF, KP, KI, KC, SE1, SE2});
+  values.refuse(p[E1] == p[E2] && p[SE1] != p[SE2], values.text(E1, E2),
+                "one voltage cannot have two saturation factors", "give two points");
+  values.refuse(p[KF] > 0 && p[TF1] == 0 && p[TF2] == 0, values.text(KF, TF1, TF2),
+                "a derivative needs a lag", "give TF1 > 0, or KF = 0 for no feedback");
   const bool at_once = p[TA4] > 0 ? p[TA2] == 0 && p[TA3] > 0 : p[TA2] == 0 || p[TA3] > 0;
-  bad(p[KF] > 0 && at_once && (p[TF1] == 0) != (p[TF2] == 0),
-      says(KF) + " with " + says(TF1) + " and " + says(TF2), "the rate feedback would form an algebraic loop",
-      "give TF1 and TF2 > 0, or lags TA2, TA4 without a lead");
-  for (const auto& [high, low] : {std::pair{VR1, VR2}, {VRMAX, VRMIN}, {EFDMAX, EFDMIN}})
-    bad(!(p[high] > p[low]), says(high) + " with " + says(low), "the range must not be empty",
-        fmt::format("give {} > {}", parameters[high].symbol, parameters[low].symbol));
+  values.refuse(p[KF] > 0 && at_once && (p[TF1] == 0) != (p[TF2] == 0), values.text(KF, TF1, TF2),
+                "the rate feedback would form an algebraic loop",
+                "give TF1 and TF2 > 0, or lags TA2, TA4 without a lead");
+  values.require_above(VR1, VR2);
+  values.require_above(VRMAX, VRMIN);
+  values.require_above(EFDMAX, EFDMIN);
 }
 
 }  // namespace swingbank::sim::effects::exciter_expic1

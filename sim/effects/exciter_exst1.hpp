@@ -1,11 +1,10 @@
 #pragma once
 // EXST1: static excitation fed from the machine's terminal.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_exst1 {
 
@@ -58,20 +57,14 @@ struct Model {
       {"rate", "pu", "state of the rate feedback", 1.0, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
-    bad(p[KF] != 0 && p[TA] == 0, fmt::format("TA = 0 s with KF = {:g}", p[KF]),
-        "the rate feedback would form an algebraic loop", "give TA > 0, or KF = 0");
-    bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "an exciter needs a gain", "give KA > 0");
-    for (int i : {TR, TB, TA})
-      bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]),
-          "a time constant cannot be negative", "give a value >= 0");
-    bad(!(p[VIMAX] > p[VIMIN]), fmt::format("VIMAX = {:g} pu with VIMIN = {:g} pu", p[VIMAX], p[VIMIN]),
-        "the range of the error must not be empty", "give VIMAX > VIMIN");
-    bad(!(p[VRMAX] > p[VRMIN]), fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[VRMAX], p[VRMIN]),
-        "the range of Efd must not be empty", "give VRMAX > VRMIN");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_time(TF, p[KF] != 0, "KF = 0");
+    values.refuse(p[KF] != 0 && p[TA] == 0, values.text(TA, KF),
+                  "the rate feedback would form an algebraic loop", "give TA > 0, or KF = 0");
+    values.require_positive({KA}, "an exciter needs a gain");
+    values.require_times({TR, TB, TA});
+    values.require_above(VIMAX, VIMIN, "the range of the error must not be empty");
+    values.require_above(VRMAX, VRMIN, "the range of Efd must not be empty");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

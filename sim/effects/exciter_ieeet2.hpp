@@ -2,6 +2,7 @@
 // IEEET2: rotating direct-current exciter with rate feedback of the regulator's output.
 #include "sim/effects/detail/rotating_dc.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_ieeet2 {
 
@@ -51,10 +52,9 @@ struct Model : shared::RotatingDc<Model> {
                                      {"slow", "pu", "rate feedback, lagged", 1.0, -1, -1, {iTF2}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     RotatingDc::check_with({TR, TF2}, p, where, problems);
-    if (!(p[TA] > 0))
-      problems.add(fmt::format("TA = {:g} s", p[TA]), where, "the rate feedback needs a lagged Vr",
-                   "give TA > 0");
+    values.require_positive({TA}, "the rate feedback needs a lagged Vr");
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

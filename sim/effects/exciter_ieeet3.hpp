@@ -6,7 +6,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/compound_source.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_ieeet3 {
 
@@ -78,21 +78,13 @@ struct Model {
                                      {"rate", "pu", "state of the rate feedback", 5.0, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-    };
-    bad(!(p[TE] > 0), says(TE), "IEEET3 divides by it", "give TE > 0");
-    shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
-    for (const int i : {KA, VBMAX})
-      bad(!(p[i] > 0), says(i), "there would be no exciter", "give a value > 0");
-    for (const int i : {TR, TA, KF, KI, KE})
-      bad(!(p[i] >= 0), says(i), "it cannot be negative", "give a value >= 0");
-    bad(!(p[KP] > 0), says(KP), "the terminal's voltage feeds the exciter", "give KP > 0");
-    bad(!(p[VRMAX] > p[VRMIN]), says(VRMAX) + " with " + says(VRMIN), "the range of Vr must not be empty",
-        "give VRMAX > VRMIN");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_divisors({TE});
+    values.require_time(TF, p[KF] != 0, "KF = 0");
+    values.require_positive({KA, VBMAX}, "there would be no exciter");
+    values.refuse_negative({TR, TA, KF, KI, KE});
+    values.require_positive({KP}, "the terminal's voltage feeds the exciter");
+    values.require_above(VRMAX, VRMIN, "the range of Vr must not be empty");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -7,9 +7,10 @@
 #include "sim/effects/detail/alternator.hpp"
 #include "sim/effects/detail/limited_integral.hpp"
 #include "sim/effects/detail/limited_lag.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_rexs {
 
@@ -184,32 +185,23 @@ struct Model : shared::Alternator<Model> {
       {.name = "Ve", .unit = "pu", .meaning = "voltage behind the rectifier", .low = none, .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     check_alternator(p, where, problems);
-    for (int i : {TR, TA, TB1, TC1, TB2, TC2, TF1, TF2, TP})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
-    for (int i : {KVP, KVI, KIP, KII, KH, KF})
-      bad(!(p[i] >= 0), says(i), "the loop would be unstable", "give a value >= 0");
+    values.require_times({TR, TA, TB1, TC1, TB2, TC2, TF1, TF2, TP});
+    values.refuse_negative({KVP, KVI, KIP, KII, KH, KF}, "the loop would be unstable");
     for (const auto& [proportional, integral] : {std::pair{KVP, KVI}, {KIP, KII}})
-      bad(p[proportional] == 0.0 && p[integral] == 0.0,
-          fmt::format("{} with {}", says(proportional), says(integral)), "a regulator needs a gain",
-          "give one of them");
-    bad(!(p[VIMAX] > 0), says(VIMAX) + " pu", "the regulator would see no error", "give VIMAX > 0");
-    shared::check_time_constant(name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
-    bad(p[KF] > 0 && p[FBF] == 0.0 && p[TA] == 0.0,
-        fmt::format("{} s with {} and {}", says(TA), says(FBF), says(KF)),
-        "the rate feedback would form an algebraic loop", "give TA > 0");
-    bad(p[FBF] != 0.0 && p[FBF] != 1.0 && p[FBF] != 2.0, says(FBF), "the signals are 0, 1 and 2",
-        "give one of them");
-    bad(!(p[FLIMF] >= 0 && p[FLIMF] <= 1), says(FLIMF),
-        "0 is for fixed limits, 1 for limits proportional to V", "give a value from 0 to 1");
-    for (const auto& [most, least] : {std::pair{VRMAX, VRMIN}, {VFMAX, VFMIN}})
-      bad(!(p[most] > p[least]), says(most) + " pu with " + says(least) + " pu",
-          "the range must not be empty",
-          fmt::format("give {} > {}", parameters[most].symbol, parameters[least].symbol));
+      values.refuse(p[proportional] == 0.0 && p[integral] == 0.0, values.text(proportional, integral),
+                    "a regulator needs a gain", "give one of them");
+    values.require_positive({VIMAX}, "the regulator would see no error");
+    values.require_time(TF, p[KF] != 0, "KF = 0");
+    values.refuse(p[KF] > 0 && p[FBF] == 0.0 && p[TA] == 0.0, values.text(TA, FBF, KF),
+                  "the rate feedback would form an algebraic loop", "give TA > 0");
+    values.refuse(p[FBF] != 0.0 && p[FBF] != 1.0 && p[FBF] != 2.0, FBF, "the signals are 0, 1 and 2",
+                  "give one of them");
+    values.refuse(!(p[FLIMF] >= 0 && p[FLIMF] <= 1), FLIMF,
+                  "0 is for fixed limits, 1 for limits proportional to V", "give a value from 0 to 1");
+    values.require_above(VRMAX, VRMIN);
+    values.require_above(VFMAX, VFMIN);
   }
   /// Returns a remark on the limits of PSS/E's REXSYS: OpenIPSL multiplies them by the field signal Vfe at 1
   /// pu, PowerWorld and InterPSS take them in pu.
@@ -285,15 +277,10 @@ struct Model : shared::Alternator<Model> {
     const auto inner_integrates = p[KII] > zero, outer_integrates = p[KVI] > zero;
     x[xi] = select(inner_integrates, Vfe, zero);
     x[Vr] = p[KH] * Vfe + select(inner_integrates, zero, Vfe / select(inner_integrates, one, p[KIP]));
-    const auto outside = [&](const char* what, const T& needed, const T& least, const T& most) {
-      const double is = value_of(needed), low = value_of(factor * least), high = value_of(factor * most);
-      return is < low || is > high
-                 ? fmt::format("{} = {:.4f} pu is needed and its limits are {:.4f}, {:.4f} pu", what, is, low,
-                               high)
-                 : std::string();
-    };
-    if (auto why = outside("Vfield", Vfe, p[VFMIN], p[VFMAX]); !why.empty()) return why;
-    if (auto why = outside("Vr", x[Vr], p[VRMIN], p[VRMAX]); !why.empty()) return why;
+    if (auto why = shared::outside("Vfield", Vfe, factor * p[VFMIN], factor * p[VFMAX]); !why.empty())
+      return why;
+    if (auto why = shared::outside("Vr", x[Vr], factor * p[VRMIN], factor * p[VRMAX]); !why.empty())
+      return why;
     x[first] = x[second] = x[Vr];
     x[xv] = select(outer_integrates, x[Vr], zero);
     const T e = select(outer_integrates, zero, x[Vr] / select(outer_integrates, one, p[KVP]));

@@ -2,6 +2,7 @@
 // SCRX: static exciter fed from the terminal or from an independent source.
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/simplified_exciter.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_scrx {
 
@@ -40,12 +41,10 @@ struct Model : shared::SimplifiedExciter<Model> {
   static constexpr State states[] = {kLeadLag, {"E", "pu", "regulator output", kLagWeight, low, high}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     SimplifiedExciter::check(p, where, problems);
-    if (p[CSWITCH] != 0 && p[CSWITCH] != 1)
-      problems.add(fmt::format("CSWITCH = {:g}", p[CSWITCH]), where, "it is a switch", "give 0 or 1");
-    if (!(p[RATIO] >= 0))
-      problems.add(fmt::format("rc/rfd = {:g}", p[RATIO]), where, "a ratio of resistances",
-                   "give a value >= 0");
+    values.require_switches({CSWITCH});
+    values.refuse_negative({RATIO}, "a ratio of resistances");
   }
 
   template <class T>

@@ -7,6 +7,7 @@
 #include "sim/effects/detail/limited_lag.hpp"
 #include "sim/effects/detail/limited_lead_lag.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_st5b {
 
@@ -81,16 +82,11 @@ struct Model {
       {.name = "Efd", .unit = "pu", .meaning = "field voltage", .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    bad(!(p[KR] > 0), says(KR), "an exciter needs a gain", "give KR > 0");
-    for (const int i : {TR, TC1, TB1, TC2, TB2, T1})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
-    bad(!(p[KC] >= 0), says(KC), "a voltage drop cannot be negative", "give KC >= 0");
-    bad(!(p[VRMAX] > p[VRMIN]), says(VRMAX) + " pu with " + says(VRMIN) + " pu",
-        "the range must not be empty", "give VRMAX > VRMIN");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_positive({KR}, "an exciter needs a gain");
+    values.require_times({TR, TC1, TB1, TC2, TB2, T1});
+    values.refuse_negative({KC}, "a voltage drop cannot be negative");
+    values.require_above(VRMAX, VRMIN);
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/effects/detail/diesel.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_degov1 {
 
@@ -46,15 +47,11 @@ struct Model : shared::Diesel<Model> {
   }();
 
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     Diesel::check(p, where, problems);
-    if (p[M] != 0 && p[M] != 1)
-      problems.add(fmt::format("M = {:g}", p[M]), where, "it is a code", "give 0 or 1");
-    if (!(p[DROOP] >= 0))
-      problems.add(fmt::format("DROOP = {:g} pu", p[DROOP]), where, "power would rise with speed",
-                   "give DROOP >= 0");
-    if (!(p[TE] >= 0))
-      problems.add(fmt::format("TE = {:g} s", p[TE]), where, "a time constant cannot be negative",
-                   "give TE >= 0");
+    values.require_switches({M});
+    values.refuse_negative({DROOP}, "power would rise with speed");
+    values.require_times({TE});
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

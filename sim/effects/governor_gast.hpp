@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_gast {
 
@@ -49,22 +50,12 @@ struct Model {
                                      {"exhaust", "pu", "measured exhaust temperature, as load"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    for (const int i : {R, T1})
-      if (!(p[i] > 0))
-        problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
-                     "GAST divides by it", "give a value > 0");
-    for (const int t : {T2, T3})
-      if (!(p[t] >= 0))
-        problems.add(fmt::format("{} = {:g} s", parameters[t].symbol, p[t]), where,
-                     "a time constant cannot be negative", "give a value >= 0");
-    if (!(p[VMAX] > p[VMIN]))
-      problems.add(fmt::format("VMAX = {:g} pu with VMIN = {:g} pu", p[VMAX], p[VMIN]), where,
-                   "the range of the valve must not be empty", "give VMAX > VMIN");
-    if (!(p[KT] >= 0))
-      problems.add(fmt::format("KT = {:g} pu", p[KT]), where, "a hotter exhaust must lower the limit",
-                   "give KT >= 0");
-    if (!(p[db] >= 0))
-      problems.add(fmt::format("db = {:g} pu", p[db]), where, "a width cannot be negative", "give db >= 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_divisors({R, T1});
+    values.require_times({T2, T3});
+    values.require_above(VMAX, VMIN, "the range of the valve must not be empty");
+    values.refuse_negative({KT}, "a hotter exhaust must lower the limit");
+    values.refuse_negative({db}, "a width cannot be negative");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

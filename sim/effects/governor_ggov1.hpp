@@ -12,7 +12,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_ggov1 {
 
@@ -309,33 +309,24 @@ struct Model {
 };
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto value = [&](int i) {
-    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i],
-                       parameters[i].is_code() ? "" : parameters[i].unit);
-  };
-  const auto bad = [&](bool wrong, const std::string& what, const char* why, const char* remedy) {
-    if (wrong) problems.add(what, where, why, remedy);
-  };
-  bad(p[Rselect] != 1 && p[Rselect] != 0 && p[Rselect] != -1 && p[Rselect] != -2, value(Rselect),
-      "it selects the droop's signal", "give 1, 0, -1 or -2");
-  bad(p[Flag] != 0 && p[Flag] != 1, value(Flag), "it is a switch", "give 0 or 1");
-  bad(p[Teng] != 0, value(Teng), "a transport delay is not modelled",
-      "give Teng = 0; the response is then as fast as the actuator");
-  for (const int i : {Tact, Kturb, Ropen, Rup})
-    bad(!(p[i] > 0), value(i), "the output would be constant", "give a value > 0");
+  const shared::ValueCheck values(name, parameters, p, where, problems);
+  values.refuse(p[Rselect] != 1 && p[Rselect] != 0 && p[Rselect] != -1 && p[Rselect] != -2, Rselect,
+                "it selects the droop's signal", "give 1, 0, -1 or -2");
+  values.require_switches({Flag});
+  values.refuse(p[Teng] != 0, Teng, "a transport delay is not modelled",
+                "give Teng = 0; the response is then as fast as the actuator");
+  values.require_positive({Tact, Kturb, Ropen, Rup}, "the output would be constant");
   for (const int i : {Rclose, Rdown})
-    bad(!(p[i] < 0), value(i), "the output would be constant", "give a value < 0");
-  for (const int i : {R, Tpelec, maxerr, Kpgov, Kigov, Kdgov, Tb, Tc, Tfload, Kpload, Kiload, Kimw, Aset, Ka,
-                      Trate, db, Tsa, Tsb})
-    bad(!(p[i] >= 0), value(i), "it is a magnitude", "give a value >= 0");
-  bad(!(p[minerr] <= 0), value(minerr), "a lower limit of the error cannot be positive", "give a value <= 0");
-  bad(!(p[Vmax] > p[Vmin]), value(Vmax) + " with " + value(Vmin), "the range of the valve must not be empty",
-      "give Vmax > Vmin");
-  bad(!(p[Vmin] < kFullLoad), value(Vmin), "the load limiter's output is at most 1 pu", "give Vmin < 1");
-  shared::check_time_constant(name, "Tdgov", p[Tdgov], p[Kdgov] > 0, "Kdgov = 0", where, problems);
-  shared::check_time_constant(name, "Ta", p[Ta], p[Ka] > 0, "Ka = 0", where, problems);
-  for (const int i : {Wfnl, Ldref, Dm})
-    bad(!(p[i] - p[i] == 0), value(i), "it must be finite", "give a number");
+    values.refuse(!(p[i] < 0), i, "the output would be constant", "give a value < 0");
+  values.refuse_negative({R, Tpelec, maxerr, Kpgov, Kigov, Kdgov, Tb, Tc, Tfload, Kpload, Kiload, Kimw, Aset,
+                          Ka, Trate, db, Tsa, Tsb},
+                         "it is a magnitude");
+  values.refuse_positive({minerr}, "a lower limit of the error cannot be positive");
+  values.require_above(Vmax, Vmin, "the range of the valve must not be empty");
+  values.refuse(!(p[Vmin] < kFullLoad), Vmin, "the load limiter's output is at most 1 pu", "give Vmin < 1");
+  values.require_time(Tdgov, p[Kdgov] > 0, "Kdgov = 0");
+  values.require_time(Ta, p[Ka] > 0, "Ka = 0");
+  values.require_finite({Wfnl, Ldref, Dm});
 }
 
 }  // namespace swingbank::sim::effects::governor_ggov1

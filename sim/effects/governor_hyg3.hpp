@@ -11,6 +11,7 @@
 #include "sim/effects/detail/hydro_pid.hpp"
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_hyg3 {
 
@@ -284,31 +285,25 @@ struct Model {
 };
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-  };
-  const auto says = [&](int i) {
-    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-  };
-  bad(p[FLAG] != 0 && p[FLAG] != 1, says(FLAG), "it is a code", "give 1 for PID or 0 for double derivative");
-  bad(p[EPS] != 0 && (p[DBH] != 0 || p[DBL] != 0), says(EPS) + " with " + says(DBH) + ", " + says(DBL),
-      "a dead-band with a step and hysteresis at its edge is not modelled", "give eps = 0");
-  bad(!(p[DBL] <= 0 && p[DBH] >= 0), says(DBH) + " with " + says(DBL),
-      "the dead-band must contain rated speed", "give dbH >= 0 and dbL <= 0");
-  for (const int i : {RGATE, RELEC, TT, TD, K2, KI, K1, TP, DB2, QNL, TW, DTURB, TRATE})
-    bad(!(p[i] >= 0), says(i), "gains, times and widths cannot be negative", "give a value >= 0");
-  for (const int i : {KG, H0, AT})
-    bad(!(p[i] > 0), says(i), "HYG3 divides by it, or is constant without it", "give a value > 0");
-  Pid::check(says(K2), p[FLAG] == 0 ? 0.0 : p[K2], says(KI), p[KI], says(K1),
-             p[FLAG] == 0 ? p[K1] + p[K2] : p[K1], says(TF), p[TF], where, problems);
-  bad(!(p[VELOPEN] > 0 && p[VELCLOSE] < 0), says(VELOPEN) + " with " + says(VELCLOSE),
-      "the gate must be able to open and to close", "give VELopen > 0 and VELclose < 0");
-  bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the range of the gate must not be empty",
-      "give Pmax > Pmin");
+  const shared::ValueCheck values(name, parameters, p, where, problems);
+  values.refuse(p[FLAG] != 0 && p[FLAG] != 1, FLAG, "it is a code",
+                "give 1 for PID or 0 for double derivative");
+  values.refuse(p[EPS] != 0 && (p[DBH] != 0 || p[DBL] != 0), values.text(EPS, DBH, DBL),
+                shared::kDeadBandStep, "give eps = 0");
+  values.refuse(!(p[DBL] <= 0 && p[DBH] >= 0), values.text(DBH, DBL),
+                "the dead-band must contain rated speed", "give dbH >= 0 and dbL <= 0");
+  values.refuse_negative({RGATE, RELEC, TT, TD, K2, KI, K1, TP, DB2, QNL, TW, DTURB, TRATE},
+                         "gains, times and widths cannot be negative");
+  values.require_positive({KG, H0, AT}, "HYG3 divides by it, or is constant without it");
+  Pid::check(values, K2, p[FLAG] == 0 ? 0.0 : p[K2], KI, p[KI], K1, p[FLAG] == 0 ? p[K1] + p[K2] : p[K1], TF,
+             p[TF]);
+  values.refuse(!(p[VELOPEN] > 0 && p[VELCLOSE] < 0), values.text(VELOPEN, VELCLOSE),
+                "the gate must be able to open and to close", "give VELopen > 0 and VELclose < 0");
+  values.require_above(PMAX, PMIN, "the range of the gate must not be empty");
   if (p[GV1] < 0)
-    bad(true, says(GV1), "it selects a curve built into PSLF", "give the curve's points");
+    values.refuse(true, GV1, "it selects a curve built into PSLF", "give the curve's points");
   else
-    shared::GatePower<6>::check(p, kGates, kPowers, says, where, problems);
+    shared::GatePower<6>::check(values, p, kGates, kPowers);
 }
 
 }  // namespace swingbank::sim::effects::governor_hyg3

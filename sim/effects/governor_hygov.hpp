@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_hygov {
 
@@ -56,15 +57,11 @@ struct Model {
                                      {"flow", "pu", "water flow"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    for (const int i : {r, Tr, Tf, Tg, VELM, TW, At})
-      if (!(p[i] > 0))
-        problems.add(fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit), where,
-                     "HYGOV divides by it, or is constant without it", "give a value > 0");
-    if (!(p[GMAX] > p[GMIN] && p[GMIN] >= 0))
-      problems.add(fmt::format("GMAX = {:g} pu with GMIN = {:g} pu", p[GMAX], p[GMIN]), where,
-                   "the range of the gate must not be empty or negative", "give GMAX > GMIN >= 0");
-    if (!(p[db] >= 0))
-      problems.add(fmt::format("db = {:g} pu", p[db]), where, "a width cannot be negative", "give db >= 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_positive({r, Tr, Tf, Tg, VELM, TW, At}, "HYGOV divides by it, or is constant without it");
+    values.refuse(!(p[GMAX] > p[GMIN] && p[GMIN] >= 0), values.text(GMAX, GMIN),
+                  "the range of the gate must not be empty or negative", "give GMAX > GMIN >= 0");
+    values.refuse_negative({db}, "a width cannot be negative");
   }
   static std::string_view unphysical(const double* p) { return p[r] > p[R] ? "" : "r > R"; }
 

@@ -1,10 +1,10 @@
 #pragma once
 // IEEEG1: steam turbine with up to four stages and a speed-limited valve.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_ieeeg1 {
 
@@ -166,27 +166,18 @@ struct Model {
 
 inline void Model::check_as(std::string_view model, const double* p, const std::string& where,
                             Problems& problems) {
-  const auto text = [&](int i) {
-    return fmt::format("{} = {:g}{}{}", parameters[i].symbol, p[i], parameters[i].is_code() ? "" : " ",
-                       parameters[i].is_code() ? "" : parameters[i].unit);
-  };
-  if (!(p[T3] > 0)) problems.add(text(T3), where, std::string(model) + " divides by it", "give T3 > 0");
-  for (const int t : {T1, T2, T4, T5, T6, T7})
-    if (!(p[t] >= 0)) problems.add(text(t), where, "a time constant cannot be negative", "give a value >= 0");
-  if (!(p[UO] > 0 && p[UC] < 0))
-    problems.add(text(UO) + " with " + text(UC), where, "the valve must be able to open and to close",
-                 "give UO > 0 and UC < 0");
-  if (!(p[PMAX] > p[PMIN]))
-    problems.add(text(PMAX) + " with " + text(PMIN), where, "the range of the valve must not be empty",
-                 "give PMAX > PMIN");
-  if (!(p[K1] + p[K3] + p[K5] + p[K7] > 0))
-    problems.add(text(K1) + ", " + text(K3) + ", " + text(K5) + ", " + text(K7), where,
-                 "the stages share the turbine's power", "give shares with a sum > 0");
+  const shared::ValueCheck values(model, parameters, p, where, problems);
+  values.require_divisors({T3});
+  values.require_times({T1, T2, T4, T5, T6, T7});
+  values.refuse(!(p[UO] > 0 && p[UC] < 0), values.text(UO, UC), "the valve must be able to open and to close",
+                "give UO > 0 and UC < 0");
+  values.require_above(PMAX, PMIN, "the range of the valve must not be empty");
+  values.refuse(!(p[K1] + p[K3] + p[K5] + p[K7] > 0), values.text(K1, K3, K5, K7),
+                "the stages share the turbine's power", "give shares with a sum > 0");
   for (const int i : {JBUS, M, K2, K4, K6, K8})
-    if (p[i] != 0)
-      problems.add(text(i), where, "a second, low-pressure generator is not modelled",
-                   "give 0 and put its share into K1, K3, K5 or K7");
-  if (!(p[db] >= 0)) problems.add(text(db), where, "a width cannot be negative", "give db >= 0");
+    values.refuse(p[i] != 0, i, "a second, low-pressure generator is not modelled",
+                  "give 0 and put its share into K1, K3, K5 or K7");
+  values.refuse_negative({db}, "a width cannot be negative");
 }
 
 }  // namespace swingbank::sim::effects::governor_ieeeg1

@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_ieeeg2 {
 
@@ -50,15 +51,9 @@ struct Model {
                                       .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-    };
-    for (const int i : {K, T1, T2, T3, T4})
-      if (!(p[i] >= 0))
-        problems.add(says(i), where, "gains and times cannot be negative", "give a value >= 0");
-    if (!(p[PMAX] > p[PMIN]))
-      problems.add(says(PMAX) + " with " + says(PMIN), where, "the range of the gate must not be empty",
-                   "give PMAX > PMIN");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.refuse_negative({K, T1, T2, T3, T4}, "gains and times cannot be negative");
+    values.require_above(PMAX, PMIN, "the range of the gate must not be empty");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -1,10 +1,10 @@
 #pragma once
 // IEEEG3: hydro turbine, linear in its water column, and a dashpot governor with a pilot valve.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_ieeeg3 {
 
@@ -68,22 +68,15 @@ struct Model {
       {"water", "pu", "state of the water column", 1.0, -1, -1, {water_lag}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-    };
-    for (const int i : {TG, A23}) bad(!(p[i] > 0), says(i), "IEEEG3 divides by it", "give a value > 0");
-    for (const int i : {TP, SIGMA, DELTA, TR, TW})
-      bad(!(p[i] >= 0), says(i), "droops and times cannot be negative", "give a value >= 0");
-    bad(!(p[UO] > 0 && p[UC] < 0), says(UO) + " with " + says(UC),
-        "the gate must be able to open and to close", "give UO > 0 and UC < 0");
-    bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the range of the gate must not be empty",
-        "give PMAX > PMIN");
-    bad(!(p[A11] >= 0) || (p[TW] > 0 && p[A11] == 0 && p[A13] * p[A21] != 0),
-        says(A11) + " with " + says(A13) + ", " + says(A21), "the water column would lead without a lag",
-        "give a11 > 0, or TW = 0 for no water column");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_divisors({TG, A23});
+    values.refuse_negative({TP, SIGMA, DELTA, TR, TW}, "droops and times cannot be negative");
+    values.refuse(!(p[UO] > 0 && p[UC] < 0), values.text(UO, UC),
+                  "the gate must be able to open and to close", "give UO > 0 and UC < 0");
+    values.require_above(PMAX, PMIN, "the range of the gate must not be empty");
+    values.refuse(!(p[A11] >= 0) || (p[TW] > 0 && p[A11] == 0 && p[A13] * p[A21] != 0),
+                  values.text(A11, A13, A21), "the water column would lead without a lag",
+                  "give a11 > 0, or TW = 0 for no water column");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_ieesgo {
 
@@ -63,17 +64,11 @@ struct Model {
       {"crossover", "pu", "flow behind the crossover, x6", 1.0, -1, -1, {iT6}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-    };
-    for (const int i : {T1, T2, T3, T4, T5, T6})
-      if (!(p[i] >= 0))
-        problems.add(says(i), where, "a time constant cannot be negative", "give a value >= 0");
-    if (!(p[K1] >= 0)) problems.add(says(K1), where, "power would rise with speed", "give K1 >= 0");
-    if (!(p[PMAX] > p[PMIN]))
-      problems.add(says(PMAX) + " with " + says(PMIN), where, "the range of power must not be empty",
-                   "give PMAX > PMIN");
-    if (!(p[db] >= 0)) problems.add(says(db), where, "a width cannot be negative", "give db >= 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_times({T1, T2, T3, T4, T5, T6});
+    values.refuse_negative({K1}, "power would rise with speed");
+    values.require_above(PMAX, PMIN, "the range of power must not be empty");
+    values.refuse_negative({db}, "a width cannot be negative");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

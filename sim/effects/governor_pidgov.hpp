@@ -1,6 +1,5 @@
 #pragma once
 // PIDGOV: hydro turbine with a straight penstock and an electro-hydraulic PID governor.
-#include <fmt/format.h>
 
 #include <array>
 
@@ -8,6 +7,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/gate_power.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_pidgov {
 
@@ -118,26 +118,18 @@ struct Model {
   }
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-    };
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    bad(p[FLAG] != 0 && p[FLAG] != 1, says(FLAG), "it is a code", "give 0 or 1");
-    for (const int i : {TA, TB, VELMAX})
-      bad(!(p[i] > 0), says(i), "PIDGOV divides by it, or is constant without it", "give a value > 0");
-    bad(!(p[VELMIN] < 0), says(VELMIN), "the gate closes with a negative velocity", "give Velmin < 0");
-    for (const int i : {RPERM, TREG, KP, KI, KD, ATW, TW})
-      bad(!(p[i] >= 0), says(i), "gains and times cannot be negative", "give a value >= 0");
-    bad(!(p[KI] > 0) && !(p[KP] > 0 && p[RPERM] > 0), says(KI) + " with " + says(KP) + ", " + says(RPERM),
-        "no gate position would be steady", "give Ki > 0, or Kp and Rperm > 0");
-    bad(!(p[GMAX] > p[GMIN]), says(GMAX) + " with " + says(GMIN), "the range of the gate must not be empty",
-        "give Gmax > Gmin");
-    bad(!(p[G0] < p[G1] && p[G1] < p[G2] && p[G2] < 1.0 && 0.0 < p[P1] && p[P1] < p[P2] && p[P2] < p[P3]),
-        says(G0) + ", " + says(G1) + ", " + says(G2) + " with " + says(P1) + ", " + says(P2) + ", " +
-            says(P3),
-        "power must rise with the opening, up to full opening", "give G0 < G1 < G2 < 1 and 0 < P1 < P2 < P3");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_switches({FLAG});
+    values.require_positive({TA, TB, VELMAX}, "PIDGOV divides by it, or is constant without it");
+    values.refuse(!(p[VELMIN] < 0), VELMIN, "the gate closes with a negative velocity", "give Velmin < 0");
+    values.refuse_negative({RPERM, TREG, KP, KI, KD, ATW, TW}, "gains and times cannot be negative");
+    values.refuse(!(p[KI] > 0) && !(p[KP] > 0 && p[RPERM] > 0), values.text(KI, KP, RPERM),
+                  "no gate position would be steady", "give Ki > 0, or Kp and Rperm > 0");
+    values.require_above(GMAX, GMIN, "the range of the gate must not be empty");
+    values.refuse(
+        !(p[G0] < p[G1] && p[G1] < p[G2] && p[G2] < 1.0 && 0.0 < p[P1] && p[P1] < p[P2] && p[P2] < p[P3]),
+        values.text(G0, G1, G2, P1, P2, P3), "power must rise with the opening, up to full opening",
+        "give G0 < G1 < G2 < 1 and 0 < P1 < P2 < P3");
   }
   static std::string_view unphysical(const double* p) {
     return p[G0] < p[G1] && p[G1] < p[G2] && p[G2] < 1.0 && p[P1] < p[P2] && p[P2] < p[P3]

@@ -1,10 +1,10 @@
 #pragma once
 // TGOV1: steam turbine with one reheater, and governor with droop.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_tgov1 {
 
@@ -44,17 +44,11 @@ struct Model {
                                      {"reheat", "pu", "state of the reheater"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (!(p[R] > 0))
-      problems.add(fmt::format("R = {:g} pu", p[R]), where, "TGOV1 divides by R", "give R > 0");
-    for (const int t : {T1, T2, T3})
-      if (!(p[t] >= 0))
-        problems.add(fmt::format("{} = {:g} s", parameters[t].symbol, p[t]), where,
-                     "a time constant cannot be negative", "give a value >= 0");
-    if (!(p[VMAX] > p[VMIN]))
-      problems.add(fmt::format("VMAX = {:g} pu with VMIN = {:g} pu", p[VMAX], p[VMIN]), where,
-                   "the range of the valve must not be empty", "give VMAX > VMIN");
-    if (!(p[db] >= 0))
-      problems.add(fmt::format("db = {:g} pu", p[db]), where, "a width cannot be negative", "give db >= 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_divisors({R});
+    values.require_times({T1, T2, T3});
+    values.require_above(VMAX, VMIN, "the range of the valve must not be empty");
+    values.refuse_negative({db}, "a width cannot be negative");
   }
   static std::string_view unphysical(const double* p) { return p[T3] >= p[T2] ? "" : "T3 >= T2"; }
 

@@ -1,6 +1,7 @@
 #pragma once
 // TGOV3: IEEEG1's governor with a reheater whose pressure has an upper limit.
 #include "sim/effects/detail/record.hpp"
+#include "sim/effects/detail/value_check.hpp"
 #include "sim/effects/governor_ieeeg1.hpp"
 
 namespace swingbank::sim::effects::governor_tgov3 {
@@ -63,12 +64,9 @@ struct Model {
     return q;
   }
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     B::check_as(name, as_ieeeg1(p).data(), where, problems);
-    for (const int i : {T5, T6, PRMAX})
-      if (!(p[i] > 0))
-        problems.add(fmt::format("{} = {:g} {}", parameters[static_cast<std::size_t>(i)].symbol, p[i],
-                                 parameters[static_cast<std::size_t>(i)].unit),
-                     where, "TGOV3 has a reheater", "give a value > 0");
+    values.require_positive({T5, T6, PRMAX}, "TGOV3 has a reheater");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

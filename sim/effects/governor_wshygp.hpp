@@ -1,7 +1,6 @@
 #pragma once
 // WSHYGP: hydro turbine, linear in its water column, and a PID governor with a curve of the gate and a
 // backlash.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
@@ -9,6 +8,7 @@
 #include "sim/effects/detail/hydro_pid.hpp"
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::governor_wshygp {
 
@@ -140,25 +140,20 @@ struct Model {
   }();
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-    };
-    bad(p[ERR] != 0.0 && p[ERR] != p[DB1], says(ERR) + " with " + says(DB1),
-        "a dead-band with a step and hysteresis at its edge is not modelled", "give err = 0 or err = db1");
-    for (const int i : {DB1, TD, KI, KD, KP, R, TT, TP, DB2, BTURB, TTURB, TRATE})
-      bad(!(p[i] >= 0), says(i), "gains, times and widths cannot be negative", "give a value >= 0");
-    bad(!(p[KG] > 0), says(KG), "a servo needs a gain", "give KG > 0");
-    Pid::check(says(KP), p[KP], says(KI), p[KI], says(KD), p[KD], says(TF), p[TF], where, problems);
-    bad(!(p[VELOPEN] > 0) || p[VELCLOSE] == 0.0, says(VELOPEN) + " with " + says(VELCLOSE),
-        "the gate must be able to open and to close", "give VELopen > 0 and VELclose other than 0");
-    bad(!(p[PMAX] > p[PMIN]), says(PMAX) + " with " + says(PMIN), "the range of the gate must not be empty",
-        "give PMAX > PMIN");
-    bad(p[TTURB] > 0 && p[BTURB] == 0.0 && p[ATURB] != 0.0, says(BTURB) + " with " + says(ATURB),
-        "the water column would lead without a lag", "give Bturb > 0, or Tturb = 0 for no water column");
-    Curve::check(p, kGates, kPowers, says, where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.refuse(p[ERR] != 0.0 && p[ERR] != p[DB1], values.text(ERR, DB1), shared::kDeadBandStep,
+                  "give err = 0 or err = db1");
+    values.refuse_negative({DB1, TD, KI, KD, KP, R, TT, TP, DB2, BTURB, TTURB, TRATE},
+                           "gains, times and widths cannot be negative");
+    values.require_positive({KG}, "a servo needs a gain");
+    Pid::check(values, KP, p[KP], KI, p[KI], KD, p[KD], TF, p[TF]);
+    values.refuse(!(p[VELOPEN] > 0) || p[VELCLOSE] == 0.0, values.text(VELOPEN, VELCLOSE),
+                  "the gate must be able to open and to close", "give VELopen > 0 and VELclose other than 0");
+    values.require_above(PMAX, PMIN, "the range of the gate must not be empty");
+    values.refuse(p[TTURB] > 0 && p[BTURB] == 0.0 && p[ATURB] != 0.0, values.text(BTURB, ATURB),
+                  "the water column would lead without a lag",
+                  "give Bturb > 0, or Tturb = 0 for no water column");
+    Curve::check(values, p, kGates, kPowers);
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -2,6 +2,7 @@
 // WSIEG1: IEEEG1 with a valve curve, a backlash and limits set at the operating point.
 #include "sim/effects/detail/gate_power.hpp"
 #include "sim/effects/detail/record.hpp"
+#include "sim/effects/detail/value_check.hpp"
 #include "sim/effects/governor_ieeeg1.hpp"
 
 namespace swingbank::sim::effects::governor_wsieg1 {
@@ -115,19 +116,17 @@ struct Model {
   }();
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto text = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     std::array<double, parameter_count> q;
     std::copy(p, p + parameter_count, q.begin());
     if (p[IBLOCK] >= 2 && p[B::PMAX] == 0.0) q[B::PMAX] = p[B::PMIN] + 1.0;  // set at the operating point
     B::check_as(name, q.data(), where, problems);
-    if (p[ERR] != 0.0 && p[ERR] != p[B::db])
-      problems.add(text(ERR) + " with " + text(B::db), where,
-                   "a dead-band with a step and hysteresis at its edge is not modelled",
-                   "give err = 0 or err = db1");
-    if (!(p[DB2] >= 0.0)) problems.add(text(DB2), where, "a width cannot be negative", "give db2 >= 0");
-    if (p[IBLOCK] != 0 && p[IBLOCK] != 1 && p[IBLOCK] != 2 && p[IBLOCK] != 3)
-      problems.add(text(IBLOCK), where, "it is a code", "give 0, 1, 2 or 3");
-    Curve::check(p, kGates, kPowers, text, where, problems);
+    values.refuse(p[ERR] != 0.0 && p[ERR] != p[B::db], values.text(ERR, B::db), shared::kDeadBandStep,
+                  "give err = 0 or err = db1");
+    values.refuse_negative({DB2}, "a width cannot be negative");
+    values.refuse(p[IBLOCK] != 0 && p[IBLOCK] != 1 && p[IBLOCK] != 2 && p[IBLOCK] != 3, IBLOCK,
+                  "it is a code", "give 0, 1, 2 or 3");
+    Curve::check(values, p, kGates, kPowers);
   }
   static std::string_view unphysical(const double*) { return ""; }
 

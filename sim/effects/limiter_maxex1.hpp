@@ -50,7 +50,7 @@ struct Model {
                                      {"Em", "pu", "measured field voltage"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    Timing::check(p + EFDRATED, name, "voltage", where, problems);
+    Timing::check({name, parameters, p, where, problems}, p + EFDRATED, EFDRATED, "voltage");
   }
   static std::string_view unphysical(const double* p) { return p[EFDDES] < p[EFD1] ? "" : "EFDDES < EFD1"; }
 

@@ -3,6 +3,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/inverse_time.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::limiter_maxex2 {
 
@@ -48,10 +49,10 @@ struct Model {
                                      {"Voel", "pu", "output", 1.0, low, zero}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (p[M] != 0.0 && p[M] != 1.0)
-      problems.add(fmt::format("M = {:g}", p[M]), where,
-                   "MAXEX2 limits the field voltage (0) or the field current (1)", "give M = 0 or 1");
-    Timing::check(p + EFDRATED, name, p[M] == 0.0 ? "voltage" : "current", where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.refuse(p[M] != 0.0 && p[M] != 1.0, M,
+                  "MAXEX2 limits the field voltage (0) or the field current (1)", "give M = 0 or 1");
+    Timing::check(values, p + EFDRATED, EFDRATED, p[M] == 0.0 ? "voltage" : "current");
   }
   static std::string_view unphysical(const double* p) { return p[EFDDES] < p[EFD1] ? "" : "EFDDES < EFD1"; }
 

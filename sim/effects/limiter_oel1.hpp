@@ -9,6 +9,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/inverse_time.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::limiter_oel1 {
 
@@ -127,21 +128,19 @@ struct Model {
 };
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-  };
-  const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+  const shared::ValueCheck values(name, parameters, p, where, problems);
   const std::string order =
       "; parameter order of the PSLF .dyd: Ifdset, Ifdmax, Tpickup, Runback, Tmax, "
       "Tset, Ifcont, Vfdflag, Alarm";
-  bad(!(p[Ifcont] > 0 && p[Ifcont] <= p[Ifdset]), says(Ifcont) + " pu with " + says(Ifdset) + " pu",
-      "the continuous limit Ifcont must be positive and not above the pickup Ifdset",
-      "give 0 < Ifcont <= Ifdset" + order);
-  bad(p[Tpickup] == 0.0, says(Tpickup) + " s", "its sign selects inverse or definite time",
-      "give Tpickup > 0 or < 0" + order);
-  for (int i : {Vfdflag, Alarm}) bad(p[i] != 0.0 && p[i] != 1.0, says(i), "a code", "give 0 or 1" + order);
+  values.refuse(!(p[Ifcont] > 0 && p[Ifcont] <= p[Ifdset]), values.text(Ifcont, Ifdset),
+                "the continuous limit Ifcont must be positive and not above the pickup Ifdset",
+                "give 0 < Ifcont <= Ifdset" + order);
+  values.refuse(p[Tpickup] == 0.0, Tpickup, "its sign selects inverse or definite time",
+                "give Tpickup > 0 or < 0" + order);
+  for (int i : {Vfdflag, Alarm})
+    values.refuse(p[i] != 0.0 && p[i] != 1.0, i, "a code", "give 0 or 1" + order);
   for (int i : {Tmax, Tset})
-    bad(!(p[i] >= 0), says(i) + " s", "a time cannot be negative", "give a value >= 0" + order);
+    values.refuse(!(p[i] >= 0), i, "a time cannot be negative", "give a value >= 0" + order);
 }
 inline std::string Model::remark(const double* p) {
   std::string text = p[Runback] == 0.0

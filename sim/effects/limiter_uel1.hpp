@@ -6,6 +6,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/under_excitation.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::limiter_uel1 {
 
@@ -74,13 +75,9 @@ struct Model {
                                      {"lead2", "pu", "state of the second lead-lag"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
-    for (int i : {KUR, KUC, VURMAX, VUCMAX})
-      bad(!(p[i] > 0), says(i) + " pu", "the circle needs a radius, a centre and limits above 0",
-          "give a value > 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_positive({KUR, KUC, VURMAX, VUCMAX},
+                            "the circle needs a radius, a centre and limits above 0");
     Regulator::check(p, where, problems);
   }
   static std::string_view unphysical(const double* p) { return p[KUC] < p[KUR] ? "" : "KUC < KUR"; }

@@ -12,6 +12,7 @@
 #include "sim/effects/detail/renewable.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/under_excitation.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::limiter_uel2 {
 
@@ -218,29 +219,26 @@ struct Model {
 };
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-  };
-  const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+  const shared::ValueCheck values(name, parameters, p, where, problems);
   for (int i : {K1, K2})
-    bad(p[i] != 0.0 && p[i] != 1.0 && p[i] != 2.0, says(i), "an exponent of the voltage", "give 0, 1 or 2");
-  bad(p[Qquad] != 0.0 && p[Qquad] != 1.0, says(Qquad), "it selects the characteristic for P' < 0",
-      "give 0 or 1");
-  for (int i : {TUV, TUP, TUQ, TUL})
-    bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
-  bad(p[KFB] != 0.0, says(KFB), "the exciter's feedback is not passed to UEL2", "give KFB = 0");
+    values.refuse(p[i] != 0.0 && p[i] != 1.0 && p[i] != 2.0, i, "an exponent of the voltage",
+                  "give 0, 1 or 2");
+  values.refuse(p[Qquad] != 0.0 && p[Qquad] != 1.0, Qquad, "it selects the characteristic for P' < 0",
+                "give 0 or 1");
+  values.require_times({TUV, TUP, TUQ, TUL});
+  values.refuse(p[KFB] != 0.0, KFB, "the exciter's feedback is not passed to UEL2", "give KFB = 0");
   Regulator::check(p, where, problems);
-  bad(!(p[P0 + 2] > p[P0]), says(P0) + " with " + says(P0 + 2), "the limit is a line through two points",
-      "give P0 < P1");
+  values.refuse(!(p[P0 + 2] > p[P0]), values.text(P0, P0 + 2), "the limit is a line through two points",
+                "give P0 < P1");
   for (int k = 2; k < kLinePoints; ++k) {
     const int here = P0 + 2 * k;
     const bool ends = !(p[here] > p[here - 2]), unused = p[here] == 0.0 && p[here + 1] == 0.0;
-    bad(ends && !unused, says(here) + " pu with " + says(here + 1) + " pu",
-        "the power must exceed that of the preceding point",
-        "give points in ascending order of the power, unused ones as 0");
-    bad(k + 1 < kLinePoints && ends && unused && (p[here + 2] != 0.0 || p[here + 3] != 0.0),
-        says(here + 2) + " pu with " + says(here + 3) + " pu", "a point follows the end of the lines",
-        "give points in ascending order of the power, unused ones as 0");
+    values.refuse(ends && !unused, values.text(here, here + 1),
+                  "the power must exceed that of the preceding point",
+                  "give points in ascending order of the power, unused ones as 0");
+    values.refuse(k + 1 < kLinePoints && ends && unused && (p[here + 2] != 0.0 || p[here + 3] != 0.0),
+                  values.text(here + 2, here + 3), "a point follows the end of the lines",
+                  "give points in ascending order of the power, unused ones as 0");
   }
 }
 inline std::string Model::remark(const double* p) {

@@ -10,6 +10,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::load_cim5 {
 
@@ -366,28 +367,21 @@ struct Model {
 };
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto value = [&](int i) {
-    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i],
-                       parameters[i].is_code() ? "" : parameters[i].unit);
-  };
-  const auto bad = [&](bool wrong, const std::string& what, const char* why, const char* remedy) {
-    if (wrong) problems.add(what, where, why, remedy);
-  };
-  bad(p[IT] != 1 && p[IT] != 2, value(IT), "it is the code of the circuit", "give 1 or 2");
-  for (const int i : {Xm, R1, X1, H})
-    bad(!(p[i] > 0), value(i), "the motor divides by it", "give a value > 0");
-  for (const int i : {Ra, Xa, R2, X2, E1, S1, E2, S2, Mbase, Pmult, TI, TB, E, Tnom})
-    bad(!(p[i] >= 0), value(i), "it is a magnitude", "give a value >= 0");
-  bad((p[R2] > 0) != (p[X2] > 0), value(R2) + " with " + value(X2), "a second cage needs both",
-      "give both > 0, or both 0 for one cage");
-  bad(p[Mbase] == 0 && !(p[Pmult] > 0), value(Mbase) + " with " + value(Pmult), "the motor has no base",
-      "give MBASE or PMULT > 0");
-  bad(p[VI] != 0, value(VI), "the undervoltage relay is not modelled", "give VI = 0");
-  bad((p[S1] > 0 || p[S2] > 0) &&
-          (p[E1] == p[E2] || !((p[E2] - p[E1]) * (p[S2] * p[E2] - p[S1] * p[E1]) > 0)),
-      value(E1) + ", " + value(S1) + " with " + value(E2) + ", " + value(S2),
-      "no quadratic rises through both", "give S(E) rising with E, or 0 for both");
-  for (const int i : {A, B, C0, D}) bad(!std::isfinite(p[i]), value(i), "it must be finite", "give a number");
+  const shared::ValueCheck values(name, parameters, p, where, problems);
+  values.refuse(p[IT] != 1 && p[IT] != 2, IT, "it is the code of the circuit", "give 1 or 2");
+  values.require_positive({Xm, R1, X1, H}, "the motor divides by it");
+  values.refuse_negative({Ra, Xa, R2, X2, E1, S1, E2, S2, Mbase, Pmult, TI, TB, E, Tnom},
+                         "it is a magnitude");
+  values.refuse((p[R2] > 0) != (p[X2] > 0), values.text(R2, X2), "a second cage needs both",
+                "give both > 0, or both 0 for one cage");
+  values.refuse(p[Mbase] == 0 && !(p[Pmult] > 0), values.text(Mbase, Pmult), "the motor has no base",
+                "give MBASE or PMULT > 0");
+  values.refuse(p[VI] != 0, VI, "the undervoltage relay is not modelled", "give VI = 0");
+  values.refuse((p[S1] > 0 || p[S2] > 0) &&
+                    (p[E1] == p[E2] || !((p[E2] - p[E1]) * (p[S2] * p[E2] - p[S1] * p[E1]) > 0)),
+                values.text(E1, S1, E2, S2), "no quadratic rises through both",
+                "give S(E) rising with E, or 0 for both");
+  values.require_finite({A, B, C0, D});
 }
 
 }  // namespace swingbank::sim::effects::load_cim5

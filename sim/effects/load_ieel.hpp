@@ -9,7 +9,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/static_load.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::load_ieel {
 
@@ -65,14 +65,10 @@ struct Model : shared::StaticLoad<Model> {
   };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    shared::check_time_constant(name, "Tf", p[Tf], p[a7] != 0 || p[a8] != 0, "a7 = a8 = 0", where, problems);
-    check_divisors(p, where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    check_load(p, p[a7] != 0 || p[a8] != 0, "a7 = a8 = 0", {a1, a2, a3, a4, a5, a6, a7, a8}, where, problems);
     for (int i = n1; i <= n6; ++i)
-      if (!(p[i] >= 0.0))
-        problems.add(fmt::format("{} = {:g}", parameters[i].symbol, p[i]), where,
-                     "a load that grows as its voltage falls has no solution near V = 0",
-                     "give an exponent >= 0");
-    check_finite(p, a1, a8, where, problems);
+      values.refuse_negative({i}, "a load that grows as its voltage falls has no solution near V = 0");
   }
   static std::string_view unphysical(const double*) { return ""; }
 
@@ -98,8 +94,7 @@ struct Model : shared::StaticLoad<Model> {
   template <class T>
   static void current(const T* c, const T* x, Signals<T>& s) {
     using std::sqrt;
-    constexpr double tiny = 1e-24;  // [pu^2] keeps the derivative finite at V = 0
-    const T squared = s.Vr * s.Vr + s.Vi * s.Vi + T(tiny), v = sqrt(squared);
+    const T squared = squared_magnitude(s.Vr, s.Vi), v = sqrt(squared);
     T y[2] = {T(0.0), T(0.0)};
     for (int k = 0; k < 6; ++k) {
       const T& edge = c[lowest + k];

@@ -9,7 +9,6 @@
 #include "sim/effects/detail/low_voltage.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/static_load.hpp"
-#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::load_ldfr {
 
@@ -52,12 +51,9 @@ struct Model : shared::LoadOfParts<Model> {
   enum C { g0, gi, gp, b0, bi, bp, em, en, er, es, vp, vi, iTf, per_angle, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    shared::check_time_constant(name, "Tf", p[Tf],
-                                (p[m] != 0 && p[Pp] != 0) || (p[n] != 0 && p[Qp] != 0) ||
-                                    (p[r] != 0 && p[Pi] != 0) || (p[s] != 0 && p[Qi] != 0),
-                                "m = n = r = s = 0", where, problems);
-    check_divisors(p, where, problems);
-    check_finite(p, m, Qp, where, problems);
+    const bool acts = (p[m] != 0 && p[Pp] != 0) || (p[n] != 0 && p[Qp] != 0) || (p[r] != 0 && p[Pi] != 0) ||
+                      (p[s] != 0 && p[Qi] != 0);
+    check_load(p, acts, "m = n = r = s = 0", {m, n, r, s, Pi, Pp, Qi, Qp}, where, problems);
   }
 
   template <class T>
@@ -76,8 +72,7 @@ struct Model : shared::LoadOfParts<Model> {
     using std::exp;
     using std::log;
     using std::sqrt;
-    constexpr double tiny = 1e-24;  // [pu^2] keeps the derivative finite at V = 0
-    const T squared = signal.Vr * signal.Vr + signal.Vi * signal.Vi + T(tiny), v = sqrt(squared);
+    const T squared = squared_magnitude(signal.Vr, signal.Vi), v = sqrt(squared);
     const T power = shared::power_per_square(v, c[vp]), amps = shared::current_per_voltage(v, c[vi]);
     const T df = bus_frequency(signal.Vr, signal.Vi, squared, x[xr], x[xi], c[per_angle]);
     const T least(1e-3);  // lower bound of the frequency [pu]: a trial step may reach values <= 0

@@ -17,6 +17,7 @@
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/renewable.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::load_svsmo1 {
 
@@ -250,11 +251,6 @@ struct Model {
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x);
 
  private:
-  template <class T>
-  static T magnitude(const T& r, const T& i) {
-    using std::sqrt;
-    return sqrt(r * r + i * i + T(1e-24));  // keeps the derivative finite at V = 0
-  }
   /// Returns 0 for `much` <= 0 and 1 for `much` >= kDipBand, linear between. `much`: distance of a quantity
   /// beyond its threshold [pu].
   template <class T>
@@ -319,27 +315,20 @@ std::string Model::steady(const T* p, T* c, Signals<T>& s, T* x) {
 }
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto says = [&](int i) {
-    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-  };
-  for (const int i : {Flag1, Flag2})
-    if (p[i] != 0.0 && p[i] != 1.0) problems.add(says(i), where, "there is no such code", "give 0 or 1");
-  if (!(p[RemoteBus] >= 0.0 && p[RemoteBus] <= parameters[RemoteBus].high))
-    problems.add(says(RemoteBus), where, "there is no such bus number", "give 0 to 999997");
+  const shared::ValueCheck values(name, parameters, p, where, problems);
+  values.require_switches({Flag1, Flag2});
+  values.refuse(!(p[RemoteBus] >= 0.0 && p[RemoteBus] <= parameters[RemoteBus].high), RemoteBus,
+                "there is no such bus number", "give 0 to 999997");
   for (int i = 0; i < parameter_count; ++i)
-    if (parameters[i].unit == "s" && !(p[i] >= 0.0))
-      problems.add(says(i), where, "a time cannot be negative", "give a value >= 0");
-  for (const int i : {Kpv, Kiv, Xc1, Vdbd2})
-    if (!(p[i] >= 0.0)) problems.add(says(i), where, "the control would be unstable", "give a value >= 0");
-  if (p[T2] == 0.0)
-    problems.add(says(T2), where, "the voltage would form an algebraic loop", "give a value > 0");
+    values.refuse(parameters[i].unit == "s" && !(p[i] >= 0.0), i, "a time cannot be negative",
+                  "give a value >= 0");
+  values.refuse_negative({Kpv, Kiv, Xc1, Vdbd2}, "the control would be unstable");
+  values.refuse(p[T2] == 0.0, T2, "the voltage would form an algebraic loop", "give a value > 0");
   for (const auto& [high, low_one] : {std::pair<int, int>{Bmax, Bmin}, {Bshrt, Bmax}, {Vdbd1, Vdbd2}})
-    if (!(p[high] >= p[low_one]))
-      problems.add(says(high) + " with " + says(low_one), where, "the first must be the wider limit",
-                   "swap them");
-  if (!(p[Vemax] >= 0.0 && p[Vemin] <= 0.0))
-    problems.add(says(Vemax) + " with " + says(Vemin), where, "an error of 0 lies between them",
-                 "give Vemax >= 0 >= Vemin");
+    values.refuse(!(p[high] >= p[low_one]), values.text(high, low_one), "the first must be the wider limit",
+                  "swap them");
+  values.refuse(!(p[Vemax] >= 0.0 && p[Vemin] <= 0.0), values.text(Vemax, Vemin),
+                "an error of 0 lies between them", "give Vemax >= 0 >= Vemin");
 }
 
 /// Returns a remark on features that the record requests and the equations omit, or "".

@@ -8,7 +8,6 @@
 #include "sim/effects/detail/low_voltage.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/static_load.hpp"
-#include "sim/effects/detail/time_constant.hpp"
 
 namespace swingbank::sim::effects::load_zip {
 
@@ -49,11 +48,7 @@ struct Model : shared::LoadOfParts<Model> {
   enum C { P0, Q0, pz, pi, pp, qz, qi, qp, vp, vi, kp, kq, iTf, per_angle, coefficients };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    shared::check_time_constant(name, "Tf", p[Tf], p[Kpf] != 0 || p[Kqf] != 0, "Kpf = Kqf = 0", where,
-                                problems);
-    check_divisors(p, where, problems);
-    check_finite(p, Pi, Qp, where, problems);
-    check_finite(p, Kpf, Kqf, where, problems);
+    check_load(p, p[Kpf] != 0 || p[Kqf] != 0, "Kpf = Kqf = 0", {Pi, Pp, Qi, Qp, Kpf, Kqf}, where, problems);
   }
 
   template <class T>
@@ -68,9 +63,7 @@ struct Model : shared::LoadOfParts<Model> {
   template <class T>
   static void current(const T* c, const T* x, Signals<T>& s) {
     using std::sqrt;
-    constexpr double tiny = 1e-24;  // [pu^2] keeps the derivative finite at V = 0
-    const T squared = s.Vr * s.Vr + s.Vi * s.Vi + T(tiny);
-    const T v = sqrt(squared);
+    const T squared = squared_magnitude(s.Vr, s.Vi), v = sqrt(squared);
     const T power = shared::power_per_square(v, c[vp]), amps = shared::current_per_voltage(v, c[vi]);
     const T df = bus_frequency(s.Vr, s.Vi, squared, x[xr], x[xi], c[per_angle]);
     const T g = c[P0] * (c[pz] + c[pi] * amps + c[pp] * power) * (T(1.0) + c[kp] * df);

@@ -10,6 +10,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/direct/swing.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::machine_gencls {
 
@@ -44,13 +45,10 @@ struct Model {
   enum M { ere, eim, scratch };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (!(p[Xdp] > 0))
-      problems.add("X'd = " + std::to_string(p[Xdp]) + " pu", where,
-                   "the machine needs a reactance behind its terminal",
-                   "give X'd > 0 (ZX of the generator in the .raw)");
-    if (!(p[H] >= 0))
-      problems.add("H = " + std::to_string(p[H]) + " s", where, "inertia cannot be negative",
-                   "give H > 0, or 0 for an infinite bus");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.refuse(!(p[Xdp] > 0), Xdp, "the machine needs a reactance behind its terminal",
+                  "give X'd > 0 (ZX of the generator in the .raw)");
+    values.refuse(!(p[H] >= 0), H, "inertia cannot be negative", "give H > 0, or 0 for an infinite bus");
   }
   static std::string_view unphysical(const double* p) { return p[Xdp] > 0 ? "" : "X'd > 0"; }
 

@@ -4,9 +4,9 @@
 //
 // As in GENTPJ, saturation and current depend on each other; the solution of GENTPJ is used, with one factor
 // for both axes.
-#include <fmt/format.h>
 
 #include "sim/effects/detail/record.hpp"
+#include "sim/effects/detail/value_check.hpp"
 #include "sim/effects/machine_gentpj.hpp"
 
 namespace swingbank::sim::effects::machine_genqec {
@@ -212,33 +212,25 @@ struct Model {
 };
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-  };
-  const auto says = [&](int i) {
-    return fmt::format("{} = {:g} {}", parameters[static_cast<std::size_t>(i)].symbol, p[i],
-                       parameters[static_cast<std::size_t>(i)].unit);
-  };
-  for (const int i : {H, Tdop, Tdopp, Tqopp, Xd, Xdpp, Xqpp})
-    bad(!(p[i] > 0), says(i), "GENQEC divides by it", "give a value > 0");
-  for (const int i : {Xdp, Xqp})
-    bad(!(p[i] > p[Xl]), says(i) + " with " + says(Xl), "GENQEC divides by their difference",
-        "give a reactance > Xl");
+  const shared::ValueCheck values(name, parameters, p, where, problems);
+  values.require_divisors({H, Tdop, Tdopp, Tqopp, Xd, Xdpp, Xqpp});
+  values.require_difference(Xdp, Xl);
+  values.require_difference(Xqp, Xl);
   for (const int i : {Xdpp, Xqpp})
-    bad(!(p[i] >= p[Xl]), says(i) + " with " + says(Xl), "only the part above Xl saturates",
-        "give a reactance >= Xl");
-  bad(!(p[Tqop] >= 0), says(Tqop), "a time constant cannot be negative", "give a value >= 0");
-  bad(p[Tqop] == 0 && p[Xqp] != p[Xq], says(Tqop) + " with " + says(Xqp) + " and " + says(Xq),
-      "without the circuit X'q is Xq", "give X'q = Xq, or T'qo > 0");
-  bad(!(p[Kw] >= 0), says(Kw), "the correction grows with the current", "give Kw >= 0");
+    values.refuse(!(p[i] >= p[Xl]), values.text(i, Xl), "only the part above Xl saturates",
+                  "give a reactance >= Xl");
+  values.require_times({Tqop});
+  values.refuse(p[Tqop] == 0 && p[Xqp] != p[Xq], values.text(Tqop, Xqp, Xq), "without the circuit X'q is Xq",
+                "give X'q = Xq, or T'qo > 0");
+  values.refuse_negative({Kw}, "the correction grows with the current");
   for (const int i : {Rcomp, Xcomp})
-    bad(p[i] != 0, says(i), "GENQEC's own compensation is not modelled",
-        "give 0, and an IEEEVC record with it");
-  bad(p[SatFunc] != 1, says(SatFunc),
-      "of GENQEC's saturation functions only the scaled quadratic (1) is modelled",
-      "give 1, or S1.0 = 0 with 1 for no saturation");
-  bad(p[S10] > 0 && !(1.2 * p[S12] > p[S10]), says(S10) + " with " + says(S12),
-      "no quadratic passes through both", "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation");
+    values.refuse(p[i] != 0, i, "GENQEC's own compensation is not modelled",
+                  "give 0, and an IEEEVC record with it");
+  values.refuse(p[SatFunc] != 1, SatFunc,
+                "of GENQEC's saturation functions only the scaled quadratic (1) is modelled",
+                "give 1, or S1.0 = 0 with 1 for no saturation");
+  values.refuse(!QuadraticSaturation::possible(p[S10], p[S12]), values.text(S10, S12),
+                QuadraticSaturation::impossible, QuadraticSaturation::remedy);
 }
 
 }  // namespace swingbank::sim::effects::machine_genqec

@@ -6,6 +6,7 @@
 // speed voltage and 0.016 degrees with mechanical torque in place of power. The record has D = 0; no
 // available record verifies the damping.
 #include "sim/effects/detail/salient_pole.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::machine_gensae {
 
@@ -29,11 +30,10 @@ struct Model : shared::SalientPole {
   enum { Se = rotor, scratch };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    check_circuits(name, p, where, problems);
-    if (!(p[Xd] > p[Xl]))
-      problems.add(fmt::format("Xd = {:g} pu with Xl = {:g} pu", p[Xd], p[Xl]), where,
-                   "GENSAE divides by Xd - Xl", "give Xd > Xl");
-    check_saturation<ExponentialSaturation>(p, where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    check_circuits(values, p);
+    values.require_difference(Xd, Xl);
+    check_saturation<ExponentialSaturation>(values, p);
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

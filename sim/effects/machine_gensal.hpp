@@ -7,6 +7,7 @@
 // psse_powersimulationsdynamics/GENSAL (D = 0) is reproduced within 0.0002 degrees over 10 s. The error is
 // 0.0009 degrees with speed voltage and 0.017 degrees with torque.
 #include "sim/effects/detail/salient_pole.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::machine_gensal {
 
@@ -29,8 +30,9 @@ struct Model : shared::SalientPole {
   enum { scratch = rotor };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    check_circuits(name, p, where, problems);
-    check_saturation<QuadraticSaturation>(p, where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    check_circuits(values, p);
+    check_saturation<QuadraticSaturation>(values, p);
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

@@ -7,12 +7,12 @@
 // method.
 //
 // Conventions are assumed to be those of GENROU; no available record verifies them.
-#include <fmt/format.h>
 
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::machine_gentpj {
 
@@ -267,28 +267,19 @@ struct Model {
 };
 
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const auto value = [&](int i) {
-    return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-  };
-  for (const int i : {H, Tdop, Tdopp, Tqopp, Xd, Xdpp, Xqpp})
-    if (!(p[i] > 0)) problems.add(value(i), where, "GENTPJ divides by it", "give a value > 0");
-  for (const auto& [wide, narrow] : {std::pair{Xdp, Xdpp}, {Xqp, Xqpp}})
-    if (!(p[wide] > p[narrow]))
-      problems.add(value(wide) + " with " + value(narrow), where, "GENTPJ divides by their difference",
-                   fmt::format("give {} > {}", parameters[wide].symbol, parameters[narrow].symbol));
+  const shared::ValueCheck values(name, parameters, p, where, problems);
+  values.require_divisors({H, Tdop, Tdopp, Tqopp, Xd, Xdpp, Xqpp});
+  values.require_difference(Xdp, Xdpp);
+  values.require_difference(Xqp, Xqpp);
   for (const int i : {Xdpp, Xqpp})
-    if (!(p[i] >= p[Xl]))
-      problems.add(value(i) + " with " + value(Xl), where, "only the part above Xl saturates",
-                   fmt::format("give {} >= Xl", parameters[i].symbol));
-  if (!(p[Tqop] >= 0))
-    problems.add(value(Tqop), where, "a time constant cannot be negative", "give a value >= 0");
-  if (p[Tqop] == 0 && p[Xqp] != p[Xq])
-    problems.add(value(Tqop) + " with " + value(Xqp) + " and " + value(Xq), where,
-                 "without the circuit X'q is Xq", "give X'q = Xq, or T'qo > 0");
-  if (!(p[Kis] >= 0)) problems.add(value(Kis), where, "current adds to saturation", "give Kis >= 0");
-  if (p[S10] > 0 && !(1.2 * p[S12] > p[S10]))
-    problems.add(fmt::format("S1.0 = {:g} with S1.2 = {:g}", p[S10], p[S12]), where,
-                 "no quadratic passes through both", "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation");
+    values.refuse(!(p[i] >= p[Xl]), values.text(i, Xl), "only the part above Xl saturates",
+                  "give a reactance >= Xl");
+  values.require_times({Tqop});
+  values.refuse(p[Tqop] == 0 && p[Xqp] != p[Xq], values.text(Tqop, Xqp, Xq), "without the circuit X'q is Xq",
+                "give X'q = Xq, or T'qo > 0");
+  values.refuse_negative({Kis}, "current adds to saturation");
+  values.refuse(!QuadraticSaturation::possible(p[S10], p[S12]), values.text(S10, S12),
+                QuadraticSaturation::impossible, QuadraticSaturation::remedy);
 }
 
 }  // namespace swingbank::sim::effects::machine_gentpj

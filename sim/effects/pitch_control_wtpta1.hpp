@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
-#include "sim/effects/detail/electrical_control.hpp"
+#include "sim/effects/detail/renewable.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::pitch_control_wtpta1 {
 
 struct Model {
-  using Core = renewable::ElectricalControl;
   static constexpr std::string_view name = "WTPTA1", title = "pitch control of a wind turbine, type A",
                                     source =
                                         "WECC (2014), Wind plant dynamic modeling guidelines, WTGPT_A; "
@@ -44,9 +44,11 @@ struct Model {
       {"angle", "deg", "angle of the blades", 1.0, least, most}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    Core::check_times(parameters, p, {Tpi}, where, problems);
-    Core::check_ranges(parameters, p, {{TetaMax, TetaMin}}, where, problems);
-    Core::check_signs(parameters, p, {Kiw, Kpw, Kic, Kpc, Kcc, RTetaMax}, {RTetaMin}, where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_times({Tpi});
+    values.require_ranges({{TetaMax, TetaMin}});
+    values.refuse_negative({Kiw, Kpw, Kic, Kpc, Kcc, RTetaMax});
+    values.refuse_positive({RTetaMin});
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -1,10 +1,11 @@
 #pragma once
 // REPCA1: plant controller of a wind, photovoltaic or storage plant.
-#include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
-#include "sim/effects/detail/electrical_control.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/record.hpp"
+#include "sim/effects/detail/renewable.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::plant_control_repca1 {
 
@@ -158,15 +159,14 @@ struct Model {
       {"power", "pu", "measured active power"},
       {.name = "p_integral", .unit = "pu", .meaning = "integral of P", .bends = true},
       {"p_lag", "pu", "lag of Pext"}};
-  using Core = renewable::ElectricalControl;
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    Core::check_flags(parameters, p, {VCFlag, RefFlag, FrqFlag}, where, problems);
-    Core::check_times(parameters, p, {Tfltr, Tft, Tfv, Tp, Tg}, where, problems);
-    Core::check_ranges(parameters, p, {{emax, emin}, {Qmax, Qmin}, {femax, femin}, {Pmax, Pmin}}, where,
-                       problems);
-    Core::check_signs(parameters, p, {dbd2, fdbd2, Kp, Ki, Kpg, Kig, Ddn, Dup}, {dbd1, fdbd1}, where,
-                      problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_switches({VCFlag, RefFlag, FrqFlag});
+    values.require_times({Tfltr, Tft, Tfv, Tp, Tg});
+    values.require_ranges({{emax, emin}, {Qmax, Qmin}, {femax, femin}, {Pmax, Pmin}});
+    values.refuse_negative({dbd2, fdbd2, Kp, Ki, Kpg, Kig, Ddn, Dup});
+    values.refuse_positive({dbd1, fdbd1});
   }
   static std::string_view unphysical(const double*) { return ""; }
 
@@ -213,13 +213,12 @@ struct Model {
   };
   template <class T>
   static Measured<T> measure_at(const T* c, const Signals<T>& s) {
-    using std::sqrt;
     Measured<T> m{s.Vr, s.Vi, s.V, s.Ir, s.Ii, s.P, s.Q};
     const T half(0.5);
     const Far<T>& f = s.far;
     m.Vr = select(c[at_bus] > half, f.Vr, m.Vr);
     m.Vi = select(c[at_bus] > half, f.Vi, m.Vi);
-    m.V = select(c[at_bus] > half, sqrt(f.Vr * f.Vr + f.Vi * f.Vi + T(1e-24)), m.V);
+    m.V = select(c[at_bus] > half, magnitude(f.Vr, f.Vi), m.V);
     m.Ir = select(c[at_branch] > half, f.Ir, m.Ir);
     m.Ii = select(c[at_branch] > half, f.Ii, m.Ii);
     m.P = select(c[at_branch] > half, f.P, m.P);
@@ -228,10 +227,9 @@ struct Model {
   }
   template <class T>
   static T regulated(const T* c, const Measured<T>& s) {
-    using std::sqrt;
     const T half(0.5);
     const T re = s.Vr - c[rc] * s.Ir + c[xc] * s.Ii, im = s.Vi - c[rc] * s.Ii - c[xc] * s.Ir;
-    const T dropped = sqrt(re * re + im * im + T(1e-24));
+    const T dropped = magnitude(re, im);
     const T voltage = select(c[line_drop] > half, dropped, s.V + c[kc] * s.Q);
     return select(c[by_voltage] > half, voltage, s.Q);
   }
@@ -261,14 +259,8 @@ struct Model {
     x[integral] = x[lead] = c[q0] = s.Qneed;
     x[power] = c[pref] = m.P;
     x[p_integral] = x[p_lag] = c[p0] = s.Pneed;
-    const auto outside = [](const char* what, const T& value, const T& low, const T& high) {
-      return value_of(value) < value_of(low) || value_of(value) > value_of(high)
-                 ? fmt::format("{} = {:.4f} pu is needed and its limits are {:g} and {:g} pu", what,
-                               value_of(value), value_of(low), value_of(high))
-                 : std::string();
-    };
-    if (auto why = outside("Qext", c[q0], c[qmin], c[qmax]); !why.empty()) return why;
-    if (value_of(c[by_power]) > 0.5) return outside("Pext", c[p0], c[pmin], c[pmax]);
+    if (auto why = shared::outside("Qext", c[q0], c[qmin], c[qmax]); !why.empty()) return why;
+    if (value_of(c[by_power]) > 0.5) return shared::outside("Pext", c[p0], c[pmin], c[pmax]);
     x[p_integral] = x[p_lag] = clamp(c[p0], c[pmin], c[pmax]);
     return {};
   }

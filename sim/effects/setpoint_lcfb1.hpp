@@ -1,11 +1,11 @@
 #pragma once
 // LCFB1: slow controller of a turbine's power that acts on the governor's reference.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/limited_integral.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::setpoint_lcfb1 {
 
@@ -58,14 +58,10 @@ struct Model {
                                       .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-    };
-    for (const int i : {FBF, PBF})
-      if (p[i] != 0 && p[i] != 1) problems.add(says(i), where, "it is a switch", "give 0 or 1");
-    for (const int i : {FB, TPELEC, DB, EMAX, KP, KI, IRMAX})
-      if (!(p[i] >= 0))
-        problems.add(says(i), where, "gains, times and widths cannot be negative", "give a value >= 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_switches({FBF, PBF});
+    values.refuse_negative({FB, TPELEC, DB, EMAX, KP, KI, IRMAX},
+                           "gains, times and widths cannot be negative");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -1,6 +1,5 @@
 #pragma once
 // IEEEST: power system stabiliser of the IEEE (1981).
-#include <fmt/format.h>
 
 #include <cmath>
 
@@ -8,7 +7,7 @@
 #include "sim/core/bus_frequency.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::stabiliser_ieeest {
 
@@ -134,32 +133,24 @@ struct Model {
       {.name = "xi", .unit = "pu", .meaning = "lagged voltage, imaginary", .moved_by = {w2}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    bad(!(p[ICS] >= 1.0 && p[ICS] <= 6.0 && p[ICS] == std::floor(p[ICS])), fmt::format("ICS = {:g}", p[ICS]),
-        "IEEEST reads speed (1), frequency (2), electrical power (3), "
-        "accelerating power (4), voltage (5) or its slope (6)",
-        "give a whole number from 1 to 6");
-    shared::check_time_constant(name, "Tf", p[Tf], p[KS] != 0 && (p[ICS] == 2.0 || p[ICS] == 6.0),
-                                "ICS other than 2 and 6 or KS = 0", where, problems);
-    bad(!std::isfinite(p[Tf]), fmt::format("Tf = {:g} s", p[Tf]), "it must be finite", "give a number");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.refuse(!(p[ICS] >= 1.0 && p[ICS] <= 6.0 && p[ICS] == std::floor(p[ICS])), ICS,
+                  "IEEEST reads speed (1), frequency (2), electrical power (3), "
+                  "accelerating power (4), voltage (5) or its slope (6)",
+                  "give a whole number from 1 to 6");
+    values.require_time(Tf, p[KS] != 0 && (p[ICS] == 2.0 || p[ICS] == 6.0),
+                        "ICS other than 2 and 6 or KS = 0");
+    values.require_finite({Tf});
     // Speed and powers are those of the machine itself, whatever the bus number.
-    bad(p[IB] != 0.0 && p[ICS] != 1.0 && p[ICS] != 3.0 && p[ICS] != 4.0, fmt::format("IB = {:g}", p[IB]),
-        "IEEEST measures only its own machine", "give IB = 0");
-    for (int i : {A1, A2, A3, A4})
-      bad(!(p[i] >= 0), fmt::format("{} = {:g}", parameters[i].symbol, p[i]), "the filter would be unstable",
-          "give a coefficient >= 0");
-    for (int i : {T2, T4, T6})
-      bad(!(p[i] >= 0), fmt::format("{} = {:g} s", parameters[i].symbol, p[i]),
-          "a time constant cannot be negative", "give a value >= 0");
+    values.refuse(p[IB] != 0.0 && p[ICS] != 1.0 && p[ICS] != 3.0 && p[ICS] != 4.0, IB,
+                  "IEEEST measures only its own machine", "give IB = 0");
+    values.refuse_negative({A1, A2, A3, A4}, "the filter would be unstable");
+    values.require_times({T2, T4, T6});
     const auto order = [](double first, double second) { return second != 0.0 ? 2 : first != 0.0 ? 1 : 0; };
-    bad(order(p[A5], p[A6]) > order(p[A1], p[A2]) + order(p[A3], p[A4]),
-        fmt::format("A5 = {:g} s, A6 = {:g} s^2", p[A5], p[A6]),
-        "the filter would differentiate: its numerator is of higher order than its denominator",
-        "give A1 to A4 to match");
-    bad(!(p[LSMAX] >= p[LSMIN]), fmt::format("LSMAX = {:g} pu with LSMIN = {:g} pu", p[LSMAX], p[LSMIN]),
-        "the limits cross", "give LSMAX >= LSMIN");
+    values.refuse(order(p[A5], p[A6]) > order(p[A1], p[A2]) + order(p[A3], p[A4]), values.text(A5, A6),
+                  "the filter would differentiate: its numerator is of higher order than its denominator",
+                  "give A1 to A4 to match");
+    values.require_ranges({{LSMAX, LSMIN}});
   }
   /// A cut-off within the band of normal voltages would switch the stabiliser on and off continually.
   static std::string_view unphysical(const double* p) {

@@ -33,12 +33,7 @@ struct Model {
   }();
   static constexpr std::span<const Parameter> parameters = kParameters;
   static constexpr Source defaults_from = B::defaults_from, bounds_from = B::bounds_from;
-  static constexpr auto kColumns = [] {
-    std::array<int, kCount> list{};
-    for (int i = 0; i < kCount; ++i) list[static_cast<std::size_t>(i)] = i;
-    return list;
-  }();
-  static constexpr std::span<const int> dyr_columns = kColumns;
+  static constexpr auto dyr_columns = shared::columns_to<kCount - 1>();
   static constexpr int coefficients = B::coefficients;
   static constexpr std::span<const State> states{B::states};
 

@@ -8,7 +8,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/record.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::stabiliser_pss2b {
 
@@ -168,35 +168,30 @@ struct Model {
   }
   /// Checks the parameters, also for PSS2A; `who`: model name for messages.
   static void check_as(std::string_view who, const double* p, const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+    const shared::ValueCheck values(who, parameters, p, where, problems);
     for (int i : {IC1, IC2})
-      bad(p[i] != 1.0 && p[i] != 3.0 && p[i] != 4.0 && p[i] != 5.0, says(i),
+      values.refuse(
+          p[i] != 1.0 && p[i] != 3.0 && p[i] != 4.0 && p[i] != 5.0, i,
           fmt::format("{} reads speed (1), electrical power (3), accelerating power (4) or voltage (5); bus "
                       "frequency (2) and voltage slope (6) are not modelled",
                       who),
           fmt::format("give {} = 1, 3, 4 or 5", parameters[i].symbol));
     for (int i : {REM1, REM2})  // p[i - 1] is the input code; only a voltage can be remote
-      bad(p[i] != 0.0 && p[i - 1] == 5.0, says(i), fmt::format("{} measures only its own machine", who),
-          fmt::format("give {} = 0", parameters[i].symbol));
+      values.refuse(p[i] != 0.0 && p[i - 1] == 5.0, i, fmt::format("{} measures only its own machine", who),
+                    fmt::format("give {} = 0", parameters[i].symbol));
     for (int i : {M, N})
-      bad(!(p[i] >= 0.0) || p[i] != static_cast<int>(p[i]), says(i), "it counts lags and stages",
-          "give a whole number >= 0");
-    bad(p[M] * p[N] > kRampLags, fmt::format("M = {:g} with N = {:g}", p[M], p[N]),
-        "the ramp-tracking filter has at most 8 lags", "give M N <= 8");
+      values.refuse(!(p[i] >= 0.0) || p[i] != static_cast<int>(p[i]), i, "it counts lags and stages",
+                    "give a whole number >= 0");
+    values.refuse(p[M] * p[N] > kRampLags, values.text(M, N), "the ramp-tracking filter has at most 8 lags",
+                  "give M N <= 8");
     const bool on = p[KS1] != 0, second = on && p[KS2] != 0, ramp = on && p[M] * p[N] != 0;
     for (const auto& [time, acts, off] :
          {std::tuple{TW1, on, "KS1 = 0"}, {TW3, second, "KS2 = 0"}, {T9, ramp, "M = 0 or N = 0"}})
-      shared::check_time_constant(who, parameters[time].symbol, p[time], acts, off, where, problems);
-    for (int i : {TW2, T6, TW4, T7, T2, T4, T11})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
-    for (const auto& [most, least] : {std::pair{VS1MAX, VS1MIN}, {VS2MAX, VS2MIN}})
-      bad(!(p[most] > p[least]), fmt::format("{} pu with {} pu", says(most), says(least)),
-          "the range of the input must not be empty", "give a range; +-100 pu never acts");
-    bad(!(p[VSTMAX] >= p[VSTMIN]), fmt::format("{} pu with {} pu", says(VSTMAX), says(VSTMIN)),
-        "the limits cross", "give VSTMAX >= VSTMIN");
+      values.require_time(time, acts, off);
+    values.require_times({TW2, T6, TW4, T7, T2, T4, T11});
+    values.require_above(VS1MAX, VS1MIN, "the range of the input must not be empty");
+    values.require_above(VS2MAX, VS2MIN, "the range of the input must not be empty");
+    values.require_ranges({{VSTMAX, VSTMIN}});
   }
   static std::string_view unphysical(const double*) { return ""; }
 

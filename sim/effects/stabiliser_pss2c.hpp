@@ -3,6 +3,7 @@
 //
 // With exact integration, the simulation reproduces the record psse_powersimulationsdynamics/PSS2C within
 // 0.16 % of its swing. The power of this record crosses both thresholds.
+#include "sim/effects/detail/value_check.hpp"
 #include "sim/effects/stabiliser_pss2b.hpp"
 
 namespace swingbank::sim::effects::stabiliser_pss2c {
@@ -42,12 +43,7 @@ struct Model {
     return list;
   }();
   static constexpr std::span<const Parameter> parameters = kParameters;
-  static constexpr auto kColumns = [] {
-    std::array<int, kCount> list{};
-    for (int i = 0; i < kCount; ++i) list[static_cast<std::size_t>(i)] = i;
-    return list;
-  }();
-  static constexpr std::span<const int> dyr_columns = kColumns;
+  static constexpr auto dyr_columns = shared::columns_to<kCount - 1>();
   enum C { t12 = B::coefficients, iT13, low, high, on, off, coefficients };
   static constexpr int lead4 = static_cast<int>(std::size(B::states)), output = lead4 + 1;
   static constexpr double kSwitchRate = 200.0;  ///< rate at which the output switches [1/s]
@@ -62,13 +58,11 @@ struct Model {
   static constexpr std::span<const State> states = kStates;
 
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     B::check_as(name, p, where, problems);
-    if (!(p[T13] >= 0))
-      problems.add(fmt::format("T13 = {:g} s", p[T13]), where, "a time constant cannot be negative",
-                   "give T13 >= 0");
-    if (!(p[PSSON] >= p[PSSOFF]))
-      problems.add(fmt::format("PSSON = {:g} pu with PSSOFF = {:g} pu", p[PSSON], p[PSSOFF]), where,
-                   "the ranges of on and off would overlap", "give PSSON >= PSSOFF");
+    values.require_times({T13});
+    values.refuse(!(p[PSSON] >= p[PSSOFF]), values.text(PSSON, PSSOFF),
+                  "the ranges of on and off would overlap", "give PSSON >= PSSOFF");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -5,7 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::stabiliser_st2cut {
 
@@ -106,22 +106,16 @@ struct Model {
                                      {"lead3", "pu", "state of the third lead-lag", 1.0, -1, -1, {iT10}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", parameters[i].symbol, p[i]); };
+    const shared::ValueCheck values(name, parameters, p, where, problems);
     for (const int i : {MODE, MODE2})
-      if (p[i] != 0.0 && p[i] != 1.0 && p[i] != 3.0 && p[i] != 4.0 && p[i] != 5.0)
-        problems.add(
-            says(i), where,
-            "ST2CUT reads nothing (0), speed (1), electrical (3) or accelerating power (4) or voltage "
-            "(5); bus frequency (2) and voltage slope (6) are not modelled",
-            fmt::format("give {} = 0, 1, 3, 4 or 5", parameters[i].symbol));
-    shared::check_time_constant(name, "T4", p[T4], p[T3] != 0 && (p[K1] != 0 || p[K2] != 0),
-                                "T3 = 0 or K1 = K2 = 0", where, problems);
-    for (const int i : {T1, T2, T3, T6, T8, T10})
-      if (!(p[i] >= 0))
-        problems.add(says(i) + " s", where, "a time constant cannot be negative", "give a value >= 0");
-    if (!(p[LSMAX] >= p[LSMIN]))
-      problems.add(says(LSMAX) + " pu with " + says(LSMIN) + " pu", where, "the limits cross",
-                   "give LSMAX >= LSMIN");
+      values.refuse(
+          p[i] != 0.0 && p[i] != 1.0 && p[i] != 3.0 && p[i] != 4.0 && p[i] != 5.0, i,
+          "ST2CUT reads nothing (0), speed (1), electrical (3) or accelerating power (4) or voltage "
+          "(5); bus frequency (2) and voltage slope (6) are not modelled",
+          fmt::format("give {} = 0, 1, 3, 4 or 5", parameters[i].symbol));
+    values.require_time(T4, p[T3] != 0 && (p[K1] != 0 || p[K2] != 0), "T3 = 0 or K1 = K2 = 0");
+    values.require_times({T1, T2, T3, T6, T8, T10});
+    values.require_ranges({{LSMAX, LSMIN}});
   }
   static std::string remark(const double* p) {
     const bool elsewhere = (p[BUSR] != 0.0 && p[MODE] == 5.0) || (p[BUSR2] != 0.0 && p[MODE2] == 5.0);

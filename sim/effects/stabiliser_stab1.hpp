@@ -1,11 +1,10 @@
 #pragma once
 // STAB1: speed-sensitive power system stabiliser.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::stabiliser_stab1 {
 
@@ -39,14 +38,10 @@ struct Model {
                                      {"lead2", "pu", "state of the second lead-lag"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    shared::check_time_constant(name, "T", p[TW], p[KT] != 0, "K/T = 0", where, problems);
-    for (int i : {T3, T4})
-      if (!(p[i] >= 0))
-        problems.add(fmt::format("{} = {:g} s", parameters[i].symbol, p[i]), where,
-                     "a time constant cannot be negative", "give a value >= 0");
-    if (!(p[HLIM] >= 0))
-      problems.add(fmt::format("HLIM = {:g} pu", p[HLIM]), where,
-                   "a limit of the magnitude cannot be negative", "give HLIM >= 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_time(TW, p[KT] != 0, "K/T = 0");
+    values.require_times({T3, T4});
+    values.refuse_negative({HLIM}, "a limit of the magnitude cannot be negative");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

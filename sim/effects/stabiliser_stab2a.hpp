@@ -1,11 +1,10 @@
 #pragma once
 // STAB2A: power-sensitive stabiliser of ASEA.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::stabiliser_stab2a {
 
@@ -41,15 +40,10 @@ struct Model {
                                      {"out2", "pu", "second output lag", 1.0, -1, -1, {iT5}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g} {}", parameters[i].symbol, p[i], parameters[i].unit);
-    };
-    shared::check_time_constant(name, "T2", p[T2], p[K2] != 0 && p[K5] != 0, "K2 = 0 or K5 = 0", where,
-                                problems);
-    for (const int i : {T3, T5})
-      if (!(p[i] >= 0))
-        problems.add(says(i), where, "a time constant cannot be negative", "give a value >= 0");
-    if (!(p[HLIM] >= 0)) problems.add(says(HLIM), where, "the limits cross", "give HLIM >= 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_time(T2, p[K2] != 0 && p[K5] != 0, "K2 = 0 or K5 = 0");
+    values.require_times({T3, T5});
+    values.refuse_negative({HLIM}, "the limits cross");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

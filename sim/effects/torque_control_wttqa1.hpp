@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "sim/core/effect.hpp"
-#include "sim/effects/detail/electrical_control.hpp"
+#include "sim/effects/detail/renewable.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::torque_control_wttqa1 {
 
 struct Model {
-  using Core = renewable::ElectricalControl;
   static constexpr std::string_view name = "WTTQA1", title = "torque control of a wind turbine, type A",
                                     source =
                                         "WECC (2014), Wind plant dynamic modeling guidelines, WTGTRQ_A; "
@@ -66,17 +66,14 @@ struct Model {
       {.name = "torque", .unit = "pu", .meaning = "integral of the torque", .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    Core::check_flags(parameters, p, {Tflag}, where, problems);
-    Core::check_times(parameters, p, {Tp, Twref}, where, problems);
-    Core::check_ranges(parameters, p, {{Temax, Temin}}, where, problems);
-    Core::check_signs(parameters, p, {Kpp, Kip, TRATE}, {}, where, problems);
-    if (!(p[p2] > p[p1]))
-      problems.add(Core::value(parameters, p, p2) + " with " + Core::value(parameters, p, p1), where,
-                   "the powers of the speed curve must ascend", "give p1 < p2 < p3 < p4");
-    for (const int i : {spd1, spd2})
-      if (!(p[i] > 0))
-        problems.add(Core::value(parameters, p, i), where, "a running turbine has a speed > 0",
-                     "give a value > 0");
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_switches({Tflag});
+    values.require_times({Tp, Twref});
+    values.require_ranges({{Temax, Temin}});
+    values.refuse_negative({Kpp, Kip, TRATE});
+    values.refuse(!(p[p2] > p[p1]), values.text(p2, p1), "the powers of the speed curve must ascend",
+                  "give p1 < p2 < p3 < p4");
+    values.require_positive({spd1, spd2}, "a running turbine has a speed > 0");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

@@ -206,8 +206,7 @@ class PlantEquations {
   }
   /// Returns the magnitude of the voltage vr + j vi at the grid's side.
   [[nodiscard]] T grid_magnitude(const Signals<T>& s, const T& vr, const T& vi) const {
-    using std::sqrt;
-    return has_transformer_ ? sqrt(vr * vr + vi * vi + T(1e-24)) : s.V;
+    return has_transformer_ ? magnitude(vr, vi) : s.V;
   }
 
  private:
@@ -306,10 +305,9 @@ class PlantEquations {
   }
   /// Computes P, Q and V from terminal voltage and current, and resets the signals that controls add to.
   static void terminal(Signals<T>& s) {
-    using std::sqrt;
     s.P = s.Vr * s.Ir + s.Vi * s.Ii;
     s.Q = s.Vi * s.Ir - s.Vr * s.Ii;
-    s.V = sqrt(s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24));  // keeps a dual's derivative finite at V = 0
+    s.V = magnitude(s.Vr, s.Vi);
     s.Vc = s.V;
     s.Vs = T(0.0);
     s.Vlimiter = s.dGref = T(0.0);

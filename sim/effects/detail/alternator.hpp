@@ -5,6 +5,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -48,17 +49,11 @@ struct Alternator {
   }
   static void check_alternator(const double* p, const std::string& where, Problems& problems) {
     using M = Model;
-    const auto says = [&](int i) {
-      return fmt::format("{} = {:g}", M::parameters[static_cast<std::size_t>(i)].symbol, p[i]);
-    };
-    if (!(p[M::TE] > 0))
-      problems.add(says(M::TE) + " s", where, fmt::format("{} divides by it", M::name), "give TE > 0");
-    for (const int i : {M::KC, M::SE1, M::SE2})
-      if (!(p[i] >= 0))
-        problems.add(says(i), where, "it only reduces the exciter's voltage", "give a value >= 0");
-    if (p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2])
-      problems.add(says(M::E1) + " = E2", where, "one voltage cannot have two saturation factors",
-                   "give two points");
+    const shared::ValueCheck values(M::name, M::parameters, p, where, problems);
+    values.require_divisors({M::TE});
+    values.refuse_negative({M::KC, M::SE1, M::SE2}, "it only reduces the exciter's voltage");
+    values.refuse(p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2], values.text(M::E1, M::E2),
+                  "one voltage cannot have two saturation factors", "give two points");
   }
 };
 

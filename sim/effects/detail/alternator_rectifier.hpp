@@ -2,13 +2,12 @@
 // Brushless exciter of EXAC1, EXAC2 and ESAC1A: regulator, alternator, rectifier. A Model names the
 // regulator's limits, may add coefficients after `alternator`, and maps the regulator's output to the
 // alternator's field by field_input(c, output, Vfe).
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/alternator.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -107,20 +106,12 @@ struct AlternatorRectifier : Alternator<Model> {
 
 template <class Model>
 void AlternatorRectifier<Model>::check(const double* p, const std::string& where, Problems& problems) {
-  const auto symbol = [](int i) { return Model::parameters[static_cast<std::size_t>(i)].symbol; };
-  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-  };
+  const shared::ValueCheck values(Model::name, Model::parameters, p, where, problems);
   Behind::check_alternator(p, where, problems);
-  check_time_constant(Model::name, "TF", p[TF], p[KF] != 0, "KF = 0", where, problems);
-  bad(!(p[KA] > 0), fmt::format("KA = {:g}", p[KA]), "an exciter needs a gain", "give KA > 0");
-  for (int i : {TR, TB, TA})
-    bad(!(p[i] >= 0), fmt::format("{} = {:g} s", symbol(i), p[i]), "a time constant cannot be negative",
-        "give a value >= 0");
-  bad(!(p[UPPER] > p[LOWER]),
-      fmt::format("{} = {:g} pu with {} = {:g} pu", symbol(UPPER), p[UPPER], symbol(LOWER), p[LOWER]),
-      "the range of the regulator must not be empty",
-      fmt::format("give {} > {}", symbol(UPPER), symbol(LOWER)));
+  values.require_time(TF, p[KF] != 0, "KF = 0");
+  values.require_positive({KA}, "an exciter needs a gain");
+  values.require_times({TR, TB, TA});
+  values.require_above(UPPER, LOWER, "the range of the regulator must not be empty");
 }
 
 }  // namespace swingbank::sim::effects::shared

@@ -9,6 +9,7 @@
 #include "sim/effects/detail/controlled_current.hpp"
 #include "sim/effects/detail/electrical_control.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -16,7 +17,6 @@ namespace swingbank::sim::effects::shared {
 /// fills, and the states Ip, Iq and Vf.
 template <class Model>
 struct BehindImpedance : ControlledCurrent<Model> {
-  using Core = renewable::ElectricalControl;  // for the checks of check_common()
   static constexpr Source defaults_from = literature::own("as REGCA1's");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter kRateFlag{"rateFlag",   "rateFlag",
@@ -58,13 +58,13 @@ struct BehindImpedance : ControlledCurrent<Model> {
 
  protected:
   static void check_common(const double* p, const std::string& where, Problems& problems) {
-    Core::check_flags(Model::parameters, p, {Model::rateFlag, Model::pqFlag}, where, problems);
-    Core::check_times(Model::parameters, p, {Model::Tfltr, Model::Te}, where, problems);
-    Core::check_signs(Model::parameters, p, {Model::Iqrmax, Model::Re}, {Model::Iqrmin}, where, problems);
-    for (const int i : {Model::Tg, Model::rrpwr, Model::Imax, Model::Xe, Model::Tfreq})
-      if (!(p[i] > 0))
-        problems.add(Core::value(Model::parameters, p, i), where,
-                     "the equations divide by it, or are constant without it", "give a value > 0");
+    const shared::ValueCheck values(Model::name, Model::parameters, p, where, problems);
+    values.require_switches({Model::rateFlag, Model::pqFlag});
+    values.require_times({Model::Tfltr, Model::Te});
+    values.refuse_negative({Model::Iqrmax, Model::Re});
+    values.refuse_positive({Model::Iqrmin});
+    values.require_positive({Model::Tg, Model::rrpwr, Model::Imax, Model::Xe, Model::Tfreq},
+                            "the equations divide by it, or are constant without it");
   }
   template <class T>
   static void prepare_common(const T* p, const Conventions& conventions, T* c) {

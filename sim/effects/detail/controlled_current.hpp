@@ -44,15 +44,6 @@ struct ControlledCurrent {
 
  protected:
   template <class T>
-  static T square_of_voltage(const Signals<T>& s) {
-    return s.Vr * s.Vr + s.Vi * s.Vi + T(1e-24);  // keeps the derivative finite at V = 0
-  }
-  template <class T>
-  static T magnitude(const Signals<T>& s) {
-    using std::sqrt;
-    return sqrt(square_of_voltage(s));
-  }
-  template <class T>
   static void prepare_frequency(const T& time_constant, const Conventions& conventions, T* c) {
     c[Model::iTfreq] = T(1.0) / time_constant;
     c[Model::per_angle] = frequency_per_angle(c[Model::iTfreq], conventions.frequency);

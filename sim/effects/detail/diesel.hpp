@@ -1,11 +1,11 @@
 #pragma once
 // Woodward's governor of a diesel engine: control box, actuator and engine of DEGOV and DEGOV1. A Model
 // appends its coefficients and states and defines the control box's input, asked(c, x, s, dx).
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -57,19 +57,12 @@ struct Diesel {
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     using M = Model;
-    const auto says = [&](int i) {
-      const auto& r = M::parameters[static_cast<std::size_t>(i)];
-      return fmt::format("{} = {:g} {}", r.symbol, p[i], r.unit);
-    };
-    if (!(p[M::K] > 0)) problems.add(says(M::K), where, "the output would be constant", "give K > 0");
-    for (const int i : {M::T1, M::T2, M::T3, M::T4, M::T5, M::T6, M::TD})
-      if (!(p[i] >= 0)) problems.add(says(i), where, "a time cannot be negative", "give a value >= 0");
-    if (p[M::T1] == 0 && (p[M::T2] != 0 || p[M::T3] != 0))
-      problems.add(says(M::T1) + " with " + says(M::T2) + " and " + says(M::T3), where,
-                   "the control box is then bypassed", "give T2 = T3 = 0 with T1 = 0");
-    if (!(p[M::TMAX] > p[M::TMIN]))
-      problems.add(says(M::TMAX) + " with " + says(M::TMIN), where,
-                   "the range of the throttle must not be empty", "give TMAX > TMIN");
+    const shared::ValueCheck values(M::name, M::parameters, p, where, problems);
+    values.require_positive({M::K}, "the output would be constant");
+    values.refuse_negative({M::T1, M::T2, M::T3, M::T4, M::T5, M::T6, M::TD}, "a time cannot be negative");
+    values.refuse(p[M::T1] == 0 && (p[M::T2] != 0 || p[M::T3] != 0), values.text(M::T1, M::T2, M::T3),
+                  "the control box is then bypassed", "give T2 = T3 = 0 with T1 = 0");
+    values.require_above(M::TMAX, M::TMIN, "the range of the throttle must not be empty");
   }
   static std::string_view unphysical(const double*) { return ""; }
 

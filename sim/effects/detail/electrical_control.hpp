@@ -3,11 +3,10 @@
 // modes, active current from the ordered power, and the limit of both.
 #include <fmt/format.h>
 
-#include <initializer_list>
 #include <string>
-#include <utility>
 
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/renewable.hpp"
 
 namespace swingbank::sim::effects::renewable {
@@ -188,50 +187,11 @@ struct ElectricalControl {
       if (value_of(s.P) == 0.0 && value_of(c[need]) != 0.0) return "the power factor is undefined: P = 0 pu";
       c[tangent] = value_of(s.P) == 0.0 ? T(0.0) : c[need] / s.P;
     }
-    const auto outside = [](const char* what, const T& value, const T& least, const T& most) {
-      return value_of(value) < value_of(least) || value_of(value) > value_of(most)
-                 ? fmt::format("{} = {:.4f} pu is needed and its limits are {:g} and {:g} pu", what,
-                               value_of(value), value_of(least), value_of(most))
-                 : std::string();
-    };
     if (!voltage) return {};
-    if (auto why = power ? outside("Qin", c[need], c[qmin], c[qmax]) : ""; !why.empty()) return why;
-    return outside("Vcmd", regulated, c[vmin], c[vmax]);
+    if (auto why = power ? shared::outside("Qin", c[need], c[qmin], c[qmax]) : ""; !why.empty()) return why;
+    return shared::outside("Vcmd", regulated, c[vmin], c[vmax]);
   }
 
-  // Checks that the effects share.
-  static std::string value(std::span<const Parameter> all, const double* p, int i) {
-    const Parameter& r = all[static_cast<std::size_t>(i)];
-    return fmt::format("{} = {:g}{}{}", r.symbol, p[i], r.is_code() ? "" : " ", r.is_code() ? "" : r.unit);
-  }
-  static void check_flags(std::span<const Parameter> all, const double* p, std::initializer_list<int> flags,
-                          const std::string& where, Problems& problems) {
-    for (const int i : flags)
-      if (p[i] != 0 && p[i] != 1) problems.add(value(all, p, i), where, "it is a switch", "give 0 or 1");
-  }
-  static void check_times(std::span<const Parameter> all, const double* p, std::initializer_list<int> times,
-                          const std::string& where, Problems& problems) {
-    for (const int i : times)
-      if (!(p[i] >= 0))
-        problems.add(value(all, p, i), where, "a time constant cannot be negative",
-                     "give 0 for none, or more");
-  }
-  static void check_ranges(std::span<const Parameter> all, const double* p,
-                           std::initializer_list<std::pair<int, int>> ranges, const std::string& where,
-                           Problems& problems) {
-    for (const auto& [high, low] : ranges)
-      if (!(p[high] >= p[low]))
-        problems.add(value(all, p, high) + " with " + value(all, p, low), where, "the limits cross",
-                     "give the upper one at least the lower one's value");
-  }
-  static void check_signs(std::span<const Parameter> all, const double* p,
-                          std::initializer_list<int> not_below, std::initializer_list<int> not_above,
-                          const std::string& where, Problems& problems) {
-    for (const int i : not_below)
-      if (!(p[i] >= 0)) problems.add(value(all, p, i), where, "it cannot be negative", "give 0 or more");
-    for (const int i : not_above)
-      if (!(p[i] <= 0)) problems.add(value(all, p, i), where, "it cannot be positive", "give 0 or less");
-  }
   static std::string remote(double bus) {
     return bus == 0
                ? std::string()

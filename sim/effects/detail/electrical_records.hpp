@@ -7,6 +7,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/electrical_control.hpp"
 #include "sim/effects/detail/record.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::renewable {
 
@@ -177,24 +178,19 @@ ElectricalControl::Values<T> electrical_values(const T* p) {
   return v;
 }
 
-/// Checks the common parameters; errors become problems.
-template <class Model>
-void check_electrical(std::span<const Parameter> all, const double* p, const std::string& where,
-                      Problems& problems) {
-  using M = Model;
-  using Core = ElectricalControl;
-  Core::check_flags(all, p, {M::PFFLAG, M::VFLAG, M::QFLAG, M::PQFLAG}, where, problems);
-  Core::check_times(all, p, {M::Trv, M::Tp, M::Tiq, M::Tpord}, where, problems);
-  Core::check_ranges(all, p,
-                     {{M::Vup, M::Vdip},
-                      {M::Iqh1, M::Iql1},
-                      {M::Qmax, M::Qmin},
-                      {M::Vmax, M::Vmin},
-                      {M::dPmax, M::dPmin},
-                      {M::Pmax, M::Pmin}},
-                     where, problems);
-  Core::check_signs(all, p, {M::dbd2, M::Kqv, M::Kqp, M::Kqi, M::Kvp, M::Kvi, M::Imax}, {M::dbd1}, where,
-                    problems);
+/// Checks the common parameters.
+template <class M>
+void check_electrical(const shared::ValueCheck& values) {
+  values.require_switches({M::PFFLAG, M::VFLAG, M::QFLAG, M::PQFLAG});
+  values.require_times({M::Trv, M::Tp, M::Tiq, M::Tpord});
+  values.require_ranges({{M::Vup, M::Vdip},
+                         {M::Iqh1, M::Iql1},
+                         {M::Qmax, M::Qmin},
+                         {M::Vmax, M::Vmin},
+                         {M::dPmax, M::dPmin},
+                         {M::Pmax, M::Pmin}});
+  values.refuse_negative({M::dbd2, M::Kqv, M::Kqp, M::Kqi, M::Kvp, M::Kvi, M::Imax});
+  values.refuse_positive({M::dbd1});
 }
 
 }  // namespace swingbank::sim::effects::renewable

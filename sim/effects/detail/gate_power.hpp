@@ -4,6 +4,7 @@
 // extrapolated linearly beyond its ends.
 
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -46,17 +47,16 @@ struct GatePower {
     return along(c, power, base, c[begin], flat, true);
   }
 
-  /// Checks the points; errors become problems.
-  template <class Text>
-  static void check(const double* p, const int (&gate)[count], const int (&power)[count], const Text& text,
-                    const std::string& where, Problems& problems) {
+  /// Checks the points.
+  static void check(const ValueCheck& values, const double* p, const int (&gate)[count],
+                    const int (&power)[count]) {
     bool over = false;
     for (int k = 0; k < segments; ++k) {
       const double run = p[gate[k + 1]] - p[gate[k]], rise = p[power[k + 1]] - p[power[k]];
-      if (over ? p[gate[k + 1]] != 0.0 || p[power[k + 1]] != 0.0 : run > 0.0 && !(rise > 0.0))
-        problems.add(text(gate[k + 1]) + " with " + text(power[k + 1]), where,
-                     over ? "a point follows the end of the curve" : "the curve must rise with the opening",
-                     "give points in ascending order, unused ones as 0");
+      const bool wrong = over ? p[gate[k + 1]] != 0.0 || p[power[k + 1]] != 0.0 : run > 0.0 && !(rise > 0.0);
+      values.refuse(wrong, values.text(gate[k + 1], power[k + 1]),
+                    over ? "a point follows the end of the curve" : "the curve must rise with the opening",
+                    "give points in ascending order, unused ones as 0");
       over = over || !(run > 0.0);
     }
   }

@@ -2,10 +2,10 @@
 // Common part of the hydro governors WSHYGP and HYG3: PID regulator with an input filter and optional droop
 // feedback, gate servo with backlash, points of the gate's curve.
 #include <array>
-#include <string>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -105,15 +105,13 @@ struct HydroPid {
     x[filtered] = x[lagged] = error;
     return error;
   }
-  static void check(const std::string& says_kp, double KP, const std::string& says_ki, double KI,
-                    const std::string& says_kd, double KD, const std::string& says_tf, double TF,
-                    const std::string& where, Problems& problems) {
-    if (!(KI > 0) && !(KP > 0))
-      problems.add(says_ki + " with " + says_kp, where, "no gate position would be steady",
-                   "give an integral or a proportional gain > 0");
-    if (!(TF >= 0) || (KD > 0 && TF == 0))
-      problems.add(says_kd + " with " + says_tf, where, "a derivative needs a lag",
-                   "give a washout > 0, or no derivative gain");
+  /// Checks the gains; `ikp` to `itf`: their parameters, for messages.
+  static void check(const ValueCheck& values, int ikp, double KP, int iki, double KI, int ikd, double KD,
+                    int itf, double TF) {
+    values.refuse(!(KI > 0) && !(KP > 0), values.text(iki, ikp), "no gate position would be steady",
+                  "give an integral or a proportional gain > 0");
+    values.refuse(!(TF >= 0) || (KD > 0 && TF == 0), values.text(ikd, itf), "a derivative needs a lag",
+                  "give a washout > 0, or no derivative gain");
   }
 };
 

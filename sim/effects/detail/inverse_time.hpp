@@ -8,6 +8,7 @@
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -100,25 +101,18 @@ struct InverseTime {
     g[1] = select(one <= timer, one, limited * c[irated] - c[i1]);
   }
 
-  /// Checks the values; errors become problems. `model`: its name, `limited`: the limited quantity.
-  static void check(const double* p, std::string_view model, std::string_view limited,
-                    const std::string& where, Problems& problems) {
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    bad(!(p[rated] > 0), fmt::format("EFDRATED = {:g} pu", p[rated]), fmt::format("{} divides by it", model),
-        "give EFDRATED > 0");
-    bad(!(p[efd1] < p[efd2] && p[efd2] < p[efd3]),
-        fmt::format("EFD1 = {:g}, EFD2 = {:g}, EFD3 = {:g}", p[efd1], p[efd2], p[efd3]),
-        "the points of the characteristic must ascend", "give EFD1 < EFD2 < EFD3");
-    bad(!(p[time1] >= p[time2] && p[time2] >= p[time3] && p[time3] > 0),
-        fmt::format("TIME1 = {:g} s, TIME2 = {:g} s, TIME3 = {:g} s", p[time1], p[time2], p[time3]),
-        fmt::format("the operating time must not rise with the {}", limited),
-        "give TIME1 >= TIME2 >= TIME3 > 0");
-    bad(!(p[gain_of_it] >= 0), fmt::format("KMX = {:g}", p[gain_of_it]), "the loop would be unstable",
-        "give KMX >= 0");
-    bad(!(p[vlow] <= 0), fmt::format("VLOW = {:g} pu", p[vlow]), "the limiter can only lower the voltage",
-        "give VLOW <= 0");
+  /// Checks the values. `first`: parameter EFDRATED; `limited`: the limited quantity.
+  static void check(const ValueCheck& values, const double* p, int first, std::string_view limited) {
+    values.require_divisors({first + rated});
+    values.refuse(!(p[efd1] < p[efd2] && p[efd2] < p[efd3]),
+                  values.text(first + efd1, first + efd2, first + efd3),
+                  "the points of the characteristic must ascend", "give EFD1 < EFD2 < EFD3");
+    values.refuse(!(p[time1] >= p[time2] && p[time2] >= p[time3] && p[time3] > 0),
+                  values.text(first + time1, first + time2, first + time3),
+                  fmt::format("the operating time must not rise with the {}", limited),
+                  "give TIME1 >= TIME2 >= TIME3 > 0");
+    values.refuse_negative({first + gain_of_it}, "the loop would be unstable");
+    values.refuse_positive({first + vlow}, "the limiter can only lower the voltage");
   }
   /// Returns the reason if the present value `now` [pu] of the limited quantity exceeds the pickup, or "".
   template <class T>

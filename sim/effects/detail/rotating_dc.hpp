@@ -9,7 +9,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
-#include "sim/effects/detail/time_constant.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -107,27 +107,19 @@ template <class Model>
 void RotatingDc<Model>::check_with(std::initializer_list<int> bypassed, const double* p,
                                    const std::string& where, Problems& problems) {
   using M = Model;
-  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-  };
-  bad(!(p[M::TE] > 0), fmt::format("TE = {:g} s", p[M::TE]), "the exciter divides by it", "give TE > 0");
-  check_time_constant("the exciter", M::parameters[M::TF].symbol, p[M::TF], p[M::KF] != 0, "KF = 0", where,
-                      problems);
-  bad(!(p[M::KA] > 0), fmt::format("KA = {:g}", p[M::KA]), "an exciter needs a gain", "give KA > 0");
-  for (int i : bypassed)
-    bad(!(p[i] >= 0), fmt::format("{} = {:g} s", M::parameters[i].symbol, p[i]),
-        "a time constant cannot be negative", "give a value >= 0");
-  for (int i : {M::SE1, M::SE2})
-    bad(!(p[i] >= 0), fmt::format("{} = {:g}", M::parameters[i].symbol, p[i]),
-        "saturation only reduces the exciter's voltage", "give a value >= 0");
-  bad(p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2], fmt::format("E1 = E2 = {:g} pu", p[M::E1]),
-      "one voltage cannot have two saturation factors", "give two points");
-  bad(p[M::VRMAX] == 0.0 && !((p[M::SE2] + (p[M::KE] > 0.0 ? p[M::KE] : 0.0)) * p[M::E2] > 0.0),
-      "VRMAX = 0 pu with SE(E2) = 0 or E2 = 0", "VRMAX is then computed from the saturation at E2",
-      "give VRMAX, or saturation");
-  bad(p[M::VRMAX] != 0.0 && !(p[M::VRMAX] > p[M::VRMIN]),
-      fmt::format("VRMAX = {:g} pu with VRMIN = {:g} pu", p[M::VRMAX], p[M::VRMIN]),
-      "the range of Vr must not be empty", "give VRMAX > VRMIN");
+  const shared::ValueCheck values(M::name, M::parameters, p, where, problems);
+  values.require_divisors({M::TE});
+  values.require_time(M::TF, p[M::KF] != 0, "KF = 0");
+  values.require_positive({M::KA}, "an exciter needs a gain");
+  values.require_times(bypassed);
+  values.refuse_negative({M::SE1, M::SE2}, "saturation only reduces the exciter's voltage");
+  values.refuse(p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2], values.text(M::E1, M::E2),
+                "one voltage cannot have two saturation factors", "give two points");
+  values.refuse(p[M::VRMAX] == 0.0 && !((p[M::SE2] + (p[M::KE] > 0.0 ? p[M::KE] : 0.0)) * p[M::E2] > 0.0),
+                "VRMAX = 0 pu with SE(E2) = 0 or E2 = 0", "VRMAX is then computed from the saturation at E2",
+                "give VRMAX, or saturation");
+  values.refuse(p[M::VRMAX] != 0.0 && !(p[M::VRMAX] > p[M::VRMIN]), values.text(M::VRMAX, M::VRMIN),
+                "the range of Vr must not be empty", "give VRMAX > VRMIN");
 }
 
 }  // namespace swingbank::sim::effects::shared

@@ -5,6 +5,7 @@
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -184,29 +185,19 @@ struct RoundRotor {
 
 template <class Model, class Saturation>
 void RoundRotor<Model, Saturation>::check(const double* p, const std::string& where, Problems& problems) {
-  const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-    if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-  };
-  const std::string machine(Model::name);
-  const auto text = [](double v) { return std::to_string(v); };
-  bad(!(p[H] > 0), "H = " + text(p[H]) + " s", "the swing equation divides by H",
-      "give H > 0 (an infinite bus is GENCLS with H = 0)");
-  bad(!(p[Tqop] >= 0), "T'qo = " + text(p[Tqop]) + " s", "a time constant cannot be negative",
-      "give a value > 0, or 0 for no such circuit");
-  for (int t : {Tdop, Tdopp, Tqopp})
-    bad(!(p[t] > 0), std::string(parameters[t].symbol) + " = " + text(p[t]) + " s",
-        machine + " integrates this circuit", "give a time constant > 0");
-  bad(!(p[Xdp] > p[Xl]), "X'd = " + text(p[Xdp]) + " pu with Xl = " + text(p[Xl]) + " pu",
-      machine + " divides by X'd - Xl", "give X'd > Xl");
-  bad(!(p[Xqp] != p[Xl]), "X'q = " + text(p[Xqp]) + " pu with Xl = " + text(p[Xl]) + " pu",
-      machine + " divides by X'q - Xl",
-      "give X'q > Xl");  // below Xl it is accepted with a remark, as in PSS/E
-  bad(!(p[Xd] > p[Xl]), "Xd = " + text(p[Xd]) + " pu with Xl = " + text(p[Xl]) + " pu",
-      machine + " divides by Xd - Xl", "give Xd > Xl");
-  bad(!(p[Xdpp] > 0), "X''d = " + text(p[Xdpp]) + " pu", "the machine needs a reactance behind its terminal",
-      "give X''d > 0");
-  bad(!Saturation::possible(p[S10], p[S12]), "S1.0 = " + text(p[S10]) + " with S1.2 = " + text(p[S12]),
-      std::string(Saturation::impossible), std::string(Saturation::remedy));
+  const ValueCheck values(Model::name, parameters, p, where, problems);
+  values.refuse(!(p[H] > 0), H, "the swing equation divides by H",
+                "give H > 0 (an infinite bus is GENCLS with H = 0)");
+  values.refuse(!(p[Tqop] >= 0), Tqop, "a time constant cannot be negative",
+                "give a value > 0, or 0 for no such circuit");
+  values.require_divisors({Tdop, Tdopp, Tqopp});
+  values.require_difference(Xdp, Xl);
+  values.refuse(!(p[Xqp] != p[Xl]), values.text(Xqp, Xl), fmt::format("{} divides by X'q - Xl", Model::name),
+                "give X'q > Xl");  // below Xl it is accepted with a remark, as in PSS/E
+  values.require_difference(Xd, Xl);
+  values.require_positive({Xdpp}, "the machine needs a reactance behind its terminal");
+  values.refuse(!Saturation::possible(p[S10], p[S12]), values.text(S10, S12), Saturation::impossible,
+                Saturation::remedy);
 }
 
 }  // namespace swingbank::sim::effects::shared

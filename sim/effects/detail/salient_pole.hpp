@@ -2,12 +2,12 @@
 // Salient-pole machine of GENSAL and GENSAE: one field and one damper circuit in each axis. A Model defines
 // the saturation: it adds its coefficients after `circuits` and implements prepare, electrical, derivative
 // and steady with the functions below.
-#include <fmt/format.h>
 
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -54,24 +54,15 @@ struct SalientPole {
   enum C { gd1, gd2, xdl, dXd, dXq, kd, iTdop, iTdopp, iTqopp, i2H, kD, W0, speed_voltage, power, circuits };
   enum M { sn, cs, pd, Id, Iq, td, rotor };  ///< a Model's own scratch begins at `rotor`
 
-  static void check_circuits(std::string_view name, const double* p, const std::string& where,
-                             Problems& problems) {
-    constexpr auto parameters = parameters_with("", "");
+  static void check_circuits(const ValueCheck& values, const double* p) {
     for (const int i : {H, Tdop, Tdopp, Tqopp, Xdpp})
-      if (!(p[i] > 0))
-        problems.add(fmt::format("{} = {:g} {}", parameters[static_cast<std::size_t>(i)].symbol, p[i],
-                                 parameters[static_cast<std::size_t>(i)].unit),
-                     where, fmt::format("{} divides by it", name),
-                     "give a value > 0 (PSS/E: 999 s for no damper)");
-    if (!(p[Xdp] > p[Xl]))
-      problems.add(fmt::format("X'd = {:g} pu with Xl = {:g} pu", p[Xdp], p[Xl]), where,
-                   fmt::format("{} divides by X'd - Xl", name), "give X'd > Xl");
+      values.refuse(!(p[i] > 0), i, values.divides(), "give a value > 0 (PSS/E: 999 s for no damper)");
+    values.require_difference(Xdp, Xl);
   }
   template <class Saturation>
-  static void check_saturation(const double* p, const std::string& where, Problems& problems) {
-    if (!Saturation::possible(p[S10], p[S12]))
-      problems.add(fmt::format("S1.0 = {:g} with S1.2 = {:g}", p[S10], p[S12]), where,
-                   std::string(Saturation::impossible), std::string(Saturation::remedy));
+  static void check_saturation(const ValueCheck& values, const double* p) {
+    values.refuse(!Saturation::possible(p[S10], p[S12]), values.text(S10, S12), Saturation::impossible,
+                  Saturation::remedy);
   }
   static std::string_view unphysical(const double* p) {
     if (!(p[Xd] > p[Xdp] && p[Xdp] > p[Xdpp] && p[Xdpp] > p[Xl])) return "Xd > X'd > X''d > Xl";

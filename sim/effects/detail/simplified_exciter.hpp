@@ -6,6 +6,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/sources.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -29,16 +30,11 @@ struct SimplifiedExciter {
   static constexpr double kLagWeight = 0.1;
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    if (!(p[K] > 0))
-      problems.add(fmt::format("K = {:g}", p[K]), where, "an exciter needs a gain", "give K > 0");
-    for (int i : {TB, TE})
-      if (!(p[i] >= 0))
-        problems.add(fmt::format("{} = {:g} s", Model::parameters[i].symbol, p[i]), where,
-                     "a time constant cannot be negative", "give a value >= 0");
-    if (!(p[EMAX] > p[EMIN]))
-      problems.add(fmt::format("EMAX = {:g} pu with EMIN = {:g} pu", p[EMAX], p[EMIN]), where,
-                   fmt::format("the range of {} must not be empty", Model::states[output].name),
-                   "give EMAX > EMIN");
+    const shared::ValueCheck values(Model::name, Model::parameters, p, where, problems);
+    values.require_positive({K}, "an exciter needs a gain");
+    values.require_times({TB, TE});
+    values.require_above(EMAX, EMIN,
+                         fmt::format("the range of {} must not be empty", Model::states[output].name));
   }
   static std::string_view unphysical(const double*) { return ""; }
 

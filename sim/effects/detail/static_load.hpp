@@ -3,10 +3,11 @@
 // current of an admittance; checks. For ZIP and LDFR also the parts of constant current and power.
 #include <fmt/format.h>
 
-#include <cmath>
+#include <initializer_list>
 #include <string>
 
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -20,21 +21,15 @@ struct StaticLoad {
   static constexpr State states[] = {{"xr", "pu", "lagged voltage, real", 0.1},
                                      {"xi", "pu", "lagged voltage, imaginary", 0.1}};
 
-  static void check_divisors(const double* p, const std::string& where, Problems& problems) {
-    if (!std::isfinite(p[Model::Tf]))
-      problems.add(fmt::format("Tf = {:g} s", p[Model::Tf]), where, "it must be finite", "give a number");
-    for (const int i : {Model::Vp, Model::Vi})
-      if (!(p[i] > 0.0) || !std::isfinite(p[i]))
-        problems.add(
-            fmt::format("{} = {:g} {}", Model::parameters[i].symbol, p[i], Model::parameters[i].unit), where,
-            fmt::format("{} divides by it", Model::name), "give a value > 0");
-  }
-  static void check_finite(const double* p, int first, int last, const std::string& where,
-                           Problems& problems) {
-    for (int i = first; i <= last; ++i)
-      if (!std::isfinite(p[i]))
-        problems.add(fmt::format("{} = {:g}", Model::parameters[i].symbol, p[i]), where, "it must be finite",
-                     "give a number");
+  /// Checks the divisors and that the parameters of `finite` are finite. `acts`: whether Tf has an effect.
+  static void check_load(const double* p, bool acts, std::string_view off, std::initializer_list<int> finite,
+                         const std::string& where, Problems& problems) {
+    using M = Model;
+    const ValueCheck values(M::name, M::parameters, p, where, problems);
+    values.require_time(M::Tf, acts, off);
+    values.require_finite({M::Tf, M::Vp, M::Vi});
+    values.require_finite(finite);
+    values.require_divisors({M::Vp, M::Vi});
   }
   /// Computes the current of the admittance g + jb [pu], which avoids a division by V.
   template <class T>

@@ -8,6 +8,7 @@
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::shared {
 
@@ -49,25 +50,21 @@ struct UnderExcitation {
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     using M = Model;
-    const auto bad = [&](bool wrong, std::string what, std::string why, std::string remedy) {
-      if (wrong) problems.add(std::move(what), where, std::move(why), std::move(remedy));
-    };
-    const auto says = [&](int i) { return fmt::format("{} = {:g}", M::parameters[i].symbol, p[i]); };
-    bad(p[M::KUF] != 0.0, says(M::KUF),
-        fmt::format("the exciter's rate feedback is not available to {}", M::name), "give KUF = 0");
-    bad(p[M::VULMIN] != 0.0, says(M::VULMIN) + " pu",
+    const shared::ValueCheck values(M::name, M::parameters, p, where, problems);
+    values.refuse(p[M::KUF] != 0.0, M::KUF,
+                  fmt::format("the exciter's rate feedback is not available to {}", M::name), "give KUF = 0");
+    values.refuse(
+        p[M::VULMIN] != 0.0, M::VULMIN,
         fmt::format("{} adds to the voltage error and must be zero within its characteristic; a takeover "
                     "gate is not modelled",
                     M::name),
         "give VULMIN = 0");
-    for (int i : {M::KUI, M::KUL})
-      bad(!(p[i] >= 0), says(i), "the limiter would act in the wrong direction", "give a value >= 0");
-    for (int i : {M::TU2, M::TU4})
-      bad(!(p[i] >= 0), says(i) + " s", "a time constant cannot be negative", "give a value >= 0");
-    bad(!(p[M::VUIMIN] <= 0.0 && p[M::VUIMAX] >= 0.0),
-        fmt::format("{} pu with {} pu", says(M::VUIMIN), says(M::VUIMAX)),
-        "the integrator starts at VUIMIN and only raises the voltage", "give VUIMIN <= 0 <= VUIMAX");
-    bad(!(p[M::VULMAX] >= 0.0), says(M::VULMAX) + " pu", "the limits cross", "give VULMAX >= 0");
+    values.refuse_negative({M::KUI, M::KUL}, "the limiter would act in the wrong direction");
+    values.require_times({M::TU2, M::TU4});
+    values.refuse(!(p[M::VUIMIN] <= 0.0 && p[M::VUIMAX] >= 0.0), values.text(M::VUIMIN, M::VUIMAX),
+                  "the integrator starts at VUIMIN and only raises the voltage",
+                  "give VUIMIN <= 0 <= VUIMAX");
+    values.refuse_negative({M::VULMAX}, "the limits cross");
   }
 };
 
