@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/effects/detail/alternator_rectifier.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_esac1a {
@@ -65,12 +66,7 @@ struct Model : shared::AlternatorRectifier<Model> {
   template <class T>
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     const std::string why = AlternatorRectifier::steady(p, c, s, x);
-    if (!why.empty()) return why;
-    const double needed = value_of(x[regulator]);
-    if (needed > value_of(p[VRMAX]) || needed < value_of(p[VRMIN]))
-      return fmt::format("Vr = {:.4f} pu is needed and VRMIN, VRMAX are {:g}, {:g} pu", needed,
-                         value_of(p[VRMIN]), value_of(p[VRMAX]));
-    return {};
+    return why.empty() ? shared::outside("Vr", x[regulator], p[VRMIN], p[VRMAX], "VRMIN, VRMAX") : why;
   }
 };
 

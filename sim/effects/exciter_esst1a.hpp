@@ -1,9 +1,9 @@
 #pragma once
 // ESST1A: static excitation fed from the machine's terminal, with two lead-lags and a field-current limiter.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/value_check.hpp"
 
@@ -183,10 +183,8 @@ struct Model {
     x[Va] = s.Efd - beside(c, s);
     x[rate] = s.Efd;
     x[leadlag] = x[leadlag1] = x[Va] / p[KA];
-    const double needed = value_of(x[leadlag]);
-    if (needed > value_of(p[VIMAX]) || needed < value_of(p[VIMIN]))
-      return fmt::format("an error of {:.4f} pu is needed and VIMIN, VIMAX are {:g}, {:g} pu", needed,
-                         value_of(p[VIMIN]), value_of(p[VIMAX]));
+    if (auto why = shared::outside("the error", x[leadlag], p[VIMIN], p[VIMAX], "VIMIN, VIMAX"); !why.empty())
+      return why;
     c[Vref] = x[leadlag] + s.Vc - (T(1.0) - c[behind]) * s.Vs - s.Vlimiter;
     return {};
   }

@@ -1,10 +1,10 @@
 #pragma once
 // ESST3A: static excitation from a potential or compound source, with an inner loop of the field voltage.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/compound_source.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/value_check.hpp"
 
@@ -179,10 +179,8 @@ struct Model {
     x[Vmr] = s.Efd / VB;
     x[Vr] = feedback(c, s.Efd) + x[Vmr] / p[KM];
     x[leadlag] = x[Vr] / p[KA];
-    const double needed = value_of(x[leadlag]);
-    if (needed > value_of(p[VIMAX]) || needed < value_of(p[VIMIN]))
-      return fmt::format("an error of {:.4f} pu is needed and VIMIN, VIMAX are {:g}, {:g} pu", needed,
-                         value_of(p[VIMIN]), value_of(p[VIMAX]));
+    if (auto why = shared::outside("the error", x[leadlag], p[VIMIN], p[VIMAX], "VIMIN, VIMAX"); !why.empty())
+      return why;
     c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;
     return {};
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/effects/detail/alternator_rectifier.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/value_check.hpp"
 
 namespace swingbank::sim::effects::exciter_exac2 {
@@ -95,10 +96,9 @@ struct Model : shared::AlternatorRectifier<Model> {
     const std::string why = AlternatorRectifier::steady(p, c, s, x);
     if (!why.empty()) return why;
     const T Vfe = x[rate], inner = Vfe / p[KB];
-    const double needed = value_of(Vfe), most = value_of(p[KL] * (p[VLR] - Vfe));
-    if (needed > value_of(p[VRMAX]) || needed < value_of(p[VRMIN]))
-      return fmt::format("Vr = {:.4f} pu is needed and VRMIN, VRMAX are {:g}, {:g} pu", needed,
-                         value_of(p[VRMIN]), value_of(p[VRMAX]));
+    if (auto limit = shared::outside("Vr", Vfe, p[VRMIN], p[VRMAX], "VRMIN, VRMAX"); !limit.empty())
+      return limit;
+    const double most = value_of(p[KL] * (p[VLR] - Vfe));
     if (value_of(inner) > most)
       return fmt::format("{:.4f} pu is needed before KB and the limiter allows KL (VLR - Vfe) = {:.4f} pu",
                          value_of(inner), most);

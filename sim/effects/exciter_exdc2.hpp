@@ -2,6 +2,7 @@
 // EXDC2: rotating direct-current exciter whose regulator is fed from the machine's terminal.
 #include "sim/effects/detail/dc_type_one.hpp"
 #include "sim/effects/detail/limited_lag.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/sources.hpp"
 
 namespace swingbank::sim::effects::exciter_exdc2 {
@@ -63,11 +64,7 @@ struct Model : shared::DcBehindLeadLag<Model> {
   }
   template <class T>
   static std::string hindrance(const T* c, const T& Vr, const T& V) {
-    const double now = value_of(Vr), v = value_of(V);
-    return now > v * value_of(c[vrmax]) || now < v * value_of(c[vrmin])
-               ? fmt::format("Vr = {:.4f} pu is needed and V VRMIN, V VRMAX are {:.4f}, {:.4f} pu", now,
-                             v * value_of(c[vrmin]), v * value_of(c[vrmax]))
-               : std::string();
+    return shared::outside("Vr", Vr, V * c[vrmin], V * c[vrmax], "V VRMIN, V VRMAX");
   }
 };
 

@@ -5,6 +5,7 @@
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/compound_source.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/value_check.hpp"
 
@@ -131,9 +132,7 @@ struct Model {
     if (value_of(share) < 1.0)
       return fmt::format("0.78 Ifd = {:.4f} pu consumes the source voltage VE = {:.4f} pu",
                          0.78 * value_of(s.Ifd), value_of(Feed::voltage(c + source_first, s)));
-    if (value_of(VB) < 0.0 || value_of(VB) > value_of(p[VBMAX]))
-      return fmt::format("VB = {:.4f} pu is needed and its limits are 0, {:g} pu", value_of(VB),
-                         value_of(p[VBMAX]));
+    if (auto why = shared::outside("VB", VB, T(0.0), p[VBMAX]); !why.empty()) return why;
     x[Vm] = s.Vc;
     x[Efd] = x[rate] = s.Efd;
     x[Vr] = VB - added;

@@ -1,11 +1,11 @@
 #pragma once
 // ST5B: static excitation system with two lead-lags limited by the bridge.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/limited_lag.hpp"
 #include "sim/effects/detail/limited_lead_lag.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/value_check.hpp"
 
@@ -117,13 +117,10 @@ struct Model {
     x[Vm] = s.Vc;
     x[Efd] = s.Efd;
     const T vr = s.Efd + c[drop] * s.Ifd;
-    const double high = value_of(c[vrmax]), low = value_of(c[vrmin]), v = value_of(s.V);
-    if (value_of(vr) > high || value_of(vr) < low)
-      return fmt::format("Vr = {:.4f} pu is needed and VRMIN, VRMAX are {:g}, {:g} pu", value_of(vr), low,
-                         high);
-    if (value_of(s.Efd) > v * high || value_of(s.Efd) < v * low)
-      return fmt::format("Efd = {:.4f} pu is needed and V VRMIN, V VRMAX are {:.4f}, {:.4f} pu",
-                         value_of(s.Efd), v * low, v * high);
+    if (auto why = shared::outside("Vr", vr, c[vrmin], c[vrmax], "VRMIN, VRMAX"); !why.empty()) return why;
+    if (auto why = shared::outside("Efd", s.Efd, s.V * c[vrmin], s.V * c[vrmax], "V VRMIN, V VRMAX");
+        !why.empty())
+      return why;
     x[leadlag1] = x[leadlag2] = vr / c[gain];
     c[Vref] = x[leadlag1] + s.Vc - s.Vs - s.Vlimiter;
     return {};

@@ -1,9 +1,9 @@
 #pragma once
 // IEEEG2: hydro turbine with a governor of one lag and one lead-lag.
-#include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
+#include "sim/effects/detail/outside.hpp"
 #include "sim/effects/detail/sources.hpp"
 #include "sim/effects/detail/value_check.hpp"
 
@@ -76,9 +76,7 @@ struct Model {
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {
-    const double gate = value_of(s.Tm), least = value_of(c[low]), most = value_of(c[high]);
-    if (gate < least || gate > most)
-      return fmt::format("a gate of {:.4f} pu is needed and PMIN, PMAX are {:g}, {:g} pu", gate, least, most);
+    if (auto why = shared::outside("gate", s.Tm, c[low], c[high], "PMIN, PMAX"); !why.empty()) return why;
     x[governor] = x[actuator] = T(0.0);
     x[water] = c[Pref] = s.Tm;
     return {};

@@ -8,14 +8,14 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Returns "Efd = 6.1000 pu is needed and its limits are 0 and 5 pu", or "" within the limits. `signal`: its
-/// name.
+/// Returns "Vr = 6.1000 pu is needed and VRMIN, VRMAX are 0, 5 pu", or "" within the limits. `signal`,
+/// `limits`: their names.
 template <class T>
-std::string outside(const char* signal, const T& needed, const T& low, const T& high) {
+std::string outside(const char* signal, const T& needed, const T& low, const T& high,
+                    const char* limits = "its limits") {
   const double value = value_of(needed), least = value_of(low), most = value_of(high);
   if (!(value < least || value > most)) return {};
-  return fmt::format("{} = {:.4f} pu is needed and its limits are {:g} and {:g} pu", signal, value, least,
-                     most);
+  return fmt::format("{} = {:.4f} pu is needed and {} are {:g}, {:g} pu", signal, value, limits, least, most);
 }
 
 }  // namespace swingbank::sim::effects::shared
