@@ -6,7 +6,8 @@
 //   parameters[], states[]        one record each; the only declaration of a parameter
 //   defaults_from, bounds_from   sources of defaults and bounds where a parameter's record gives none
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
-//   check(), unphysical()         singular values (always refused), violated orderings (refused in draws)
+//   check()                       singular values, which are always refused
+//   unphysical()                  optional: violated ordering of values, which is refused in draws
 //   prepare<T>()                  computes coefficients from parameters, so that the loop has no division
 //   equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
@@ -446,7 +447,8 @@ Effect make_effect() {
   e.check = +[](const void*, const double* p, const std::string& where, Problems& problems) {
     M::check(p, where, problems);
   };
-  e.unphysical = &M::unphysical;
+  e.unphysical = +[](const double*) { return std::string_view(); };
+  if constexpr (requires { &M::unphysical; }) e.unphysical = &M::unphysical;
   if constexpr (requires { &M::remark; }) e.remark = &M::remark;
   if constexpr (requires { &M::switching_times; })
     e.switching_times = +[](const void*, const double* p) { return M::switching_times(p); };

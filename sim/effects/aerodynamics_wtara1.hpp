@@ -30,7 +30,6 @@ struct Model {
     const shared::ValueCheck values(name, parameters, p, where, problems);
     values.refuse_negative({Ka});
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -34,7 +34,6 @@ struct Model {
                     "at rated current the compensated voltage would vanish or double",
                     "give it on the machine's base, between -1 and 1 pu");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -48,7 +48,6 @@ struct Model {
                   "give Freq1 > 0, or Htfrac = 0 for one mass");
     values.refuse_negative({DAMP, Dshaft});
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

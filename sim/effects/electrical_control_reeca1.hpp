@@ -112,7 +112,6 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
     values.require_switches({PFLAG});
     values.require_times({Thld2});
   }
-  static std::string_view unphysical(const double*) { return ""; }
   static std::string remark(const double* p) { return Core::remote(p[RemoteBus]); }
 
   template <class T>

@@ -43,7 +43,6 @@ struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::
   static void check(const double* p, const std::string& where, Problems& problems) {
     renewable::check_electrical<Model>(shared::ValueCheck(name, parameters, p, where, problems));
   }
-  static std::string_view unphysical(const double*) { return ""; }
   static std::string remark(const double* p) { return Core::remote(p[RemoteBus]); }
 
   template <class T>

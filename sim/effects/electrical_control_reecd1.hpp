@@ -152,7 +152,6 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
     for (int i = Vq1 + 1; i < Rc; i += 2) values.refuse_negative({i});
     values.refuse(!(p[Ke] >= 0 && p[Ke] <= 1), Ke, "it is a fraction of the upper limit", "give 0 to 1");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

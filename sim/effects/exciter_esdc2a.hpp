@@ -39,7 +39,6 @@ struct Model {
   static void check(const double* p, const std::string& where, Problems& problems) {
     B::check(p, where, problems);
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

@@ -135,7 +135,6 @@ struct Model {
     values.require_above(VAMAX, VAMIN);
     values.require_above(VRMAX, VRMIN);
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

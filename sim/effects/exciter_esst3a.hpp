@@ -127,7 +127,6 @@ struct Model {
     values.require_above(VRMAX, VRMIN);
     values.require_above(VMMAX, VMMIN);
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

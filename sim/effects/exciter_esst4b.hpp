@@ -111,7 +111,6 @@ struct Model {
     values.require_above(VRMAX, VRMIN, "the range of the regulator must not be empty");
     values.require_above(VMMAX, VMMIN, "the range of the regulator must not be empty");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -148,7 +148,6 @@ struct Model {
       {.name = "Efd", .unit = "pu", .meaning = "field voltage", .moved_by = {iTE}, .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems);
-  static std::string_view unphysical(const double*) { return ""; }
   static std::string remark(const double* p) {
     return p[KF] == 0.0
                ? ""

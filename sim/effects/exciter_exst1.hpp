@@ -66,7 +66,6 @@ struct Model {
     values.require_above(VIMAX, VIMIN, "the range of the error must not be empty");
     values.require_above(VRMAX, VRMIN, "the range of Efd must not be empty");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

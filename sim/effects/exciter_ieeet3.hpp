@@ -87,7 +87,6 @@ struct Model {
     values.require_positive({KP}, "the terminal's voltage feeds the exciter");
     values.require_above(VRMAX, VRMIN, "the range of Vr must not be empty");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -88,7 +88,6 @@ struct Model {
     values.refuse_negative({KC}, "a voltage drop cannot be negative");
     values.require_above(VRMAX, VRMIN);
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -57,7 +57,6 @@ struct Model {
     values.refuse_negative({KT}, "a hotter exhaust must lower the limit");
     values.refuse_negative({db}, "a width cannot be negative");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -185,7 +185,6 @@ struct Model {
                                      {"turbine", "pu", "turbine power"}};
 
   static void check(const double* p, const std::string& where, Problems& problems);
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

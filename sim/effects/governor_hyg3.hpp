@@ -182,7 +182,6 @@ struct Model {
   }();
 
   static void check(const double* p, const std::string& where, Problems& problems);
-  static std::string_view unphysical(const double*) { return ""; }
 
   /// Returns the curve's points with its ends, openings and then powers; zero after the last one.
   template <class T>

@@ -110,7 +110,6 @@ struct Model {
   }
   /// Checks another model that begins with the same parameters; `model`: its name.
   static void check_as(std::string_view model, const double* p, const std::string& where, Problems& problems);
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

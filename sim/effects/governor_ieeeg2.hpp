@@ -55,7 +55,6 @@ struct Model {
     values.refuse_negative({K, T1, T2, T3, T4}, "gains and times cannot be negative");
     values.require_above(PMAX, PMIN, "the range of the gate must not be empty");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -78,7 +78,6 @@ struct Model {
                   values.text(A11, A13, A21), "the water column would lead without a lag",
                   "give a11 > 0, or TW = 0 for no water column");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

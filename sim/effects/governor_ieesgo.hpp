@@ -70,7 +70,6 @@ struct Model {
     values.require_above(PMAX, PMIN, "the range of power must not be empty");
     values.refuse_negative({db}, "a width cannot be negative");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -68,7 +68,6 @@ struct Model {
     B::check_as(name, as_ieeeg1(p).data(), where, problems);
     values.require_positive({T5, T6, PRMAX}, "TGOV3 has a reheater");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

@@ -155,7 +155,6 @@ struct Model {
                   "give Bturb > 0, or Tturb = 0 for no water column");
     Curve::check(values, p, kGates, kPowers);
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

@@ -128,7 +128,6 @@ struct Model {
                   "it is a code", "give 0, 1, 2 or 3");
     Curve::check(values, p, kGates, kPowers);
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

@@ -70,7 +70,6 @@ struct Model {
       -20.0;  ///< reset rate of the timer below the continuous limit [1/s]
 
   static void check(const double* p, const std::string& where, Problems& problems);
-  static std::string_view unphysical(const double*) { return {}; }
   static std::string remark(const double* p);
 
   template <class T>

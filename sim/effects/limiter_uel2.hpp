@@ -152,7 +152,6 @@ struct Model {
       {"lead1", "pu", "state of the first lead-lag"}, {"lead2", "pu", "state of the second lead-lag"}};
 
   static void check(const double* p, const std::string& where, Problems& problems);
-  static std::string_view unphysical(const double*) { return {}; }
   static std::string remark(const double* p);
 
   template <class T>

@@ -70,7 +70,6 @@ struct Model : shared::StaticLoad<Model> {
     for (int i = n1; i <= n6; ++i)
       values.refuse_negative({i}, "a load that grows as its voltage falls has no solution near V = 0");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   /// Returns V^n.
   template <class T>

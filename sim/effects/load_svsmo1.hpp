@@ -218,7 +218,6 @@ struct Model {
   }();
 
   static void check(const double* p, const std::string& where, Problems& problems);
-  static std::string_view unphysical(const double*) { return ""; }
   static std::string remark(const double* p);
 
   template <class T>

@@ -30,7 +30,6 @@ struct Model {
       problems.add(fmt::format("gain = {:g} pu", p[gain]), where, "the current would be zero",
                    "give gain > -1");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   static void measure(const double* p, std::uint64_t, Phasors& phasors) {
     const std::complex<double> factor = std::polar(1.0 + p[gain], p[phase]);

@@ -37,7 +37,6 @@ struct Model {
         problems.add(fmt::format("{} = {:g} s", parameters[i].name, p[i]), where, "a time cannot be negative",
                      "give 0 or more");
   }
-  static std::string_view unphysical(const double*) { return ""; }
   static double memory(const double* p) { return 0.5 * (p[span] + p[smoothing]); }
 
   static void measure(const double* p, std::uint64_t, Phasors& phasors) {

@@ -32,7 +32,6 @@ struct Model {
       problems.add(fmt::format("{} = {:g} s", parameters[lag].name, p[lag]), where,
                    "a time constant cannot be negative", "give 0 or more");
   }
-  static std::string_view unphysical(const double*) { return ""; }
   static double angle_lag(const double* p) { return p[lag]; }
   static double memory(const double* p) {
     constexpr double kForgotten =

@@ -38,7 +38,6 @@ struct Model {
       problems.add(fmt::format("length = {:g} s", p[length]), where, "a gap needs a length",
                    "give length > 0");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   static constexpr std::uint32_t kStream = 11;  ///< random-number stream, distinct from those of NOISE
 

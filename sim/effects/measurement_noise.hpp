@@ -38,7 +38,6 @@ struct Model {
         problems.add(fmt::format("{} = {:g} {}", parameters[i].name, p[i], parameters[i].unit), where,
                      "it is a standard deviation", "give 0 or more");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   /// Random-number streams, separate so that one kind of noise does not affect the others.
   enum Stream : std::uint32_t { of_V = 1, of_I, onto_V, onto_I, of_frequency };

@@ -58,7 +58,6 @@ struct Model {
           "class M has windows for 10, 25, 50, 100 at 50 Hz and 10, 12, 15, 20, 30, 60, 120 at 60 Hz",
           "give one of these");
   }
-  static std::string_view unphysical(const double*) { return ""; }
   static double half_length(const double* p, double hz) {
     if (p[klass] == 0.0) return p[scale] * pmu_window::kHalfOfP / hz;
     const pmu_window::MClass* row = pmu_window::find(hz, p[reports]);

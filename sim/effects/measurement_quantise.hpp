@@ -34,7 +34,6 @@ struct Model {
         problems.add(fmt::format("{} = {:g} {}", parameters[i].name, p[i], parameters[i].unit), where,
                      "it is a step", "give 0 or more");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   static double nearest(double value, double step) {
     return step > 0.0 ? step * std::nearbyint(value / step) : value;

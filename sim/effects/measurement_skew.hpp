@@ -28,7 +28,6 @@ struct Model {
       {"skew", "tau", "s", 0.0, -1.0, 1.0, 0.0, "delay of the current"}};
 
   static void check(const double*, const std::string&, Problems&) {}
-  static std::string_view unphysical(const double*) { return ""; }
   static double memory(const double* p) { return std::abs(p[skew]); }
 
   static void measure(const double* p, std::uint64_t, Phasors& phasors) {

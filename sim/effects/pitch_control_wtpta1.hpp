@@ -50,7 +50,6 @@ struct Model {
     values.refuse_negative({Kiw, Kpw, Kic, Kpc, Kcc, RTetaMax});
     values.refuse_positive({RTetaMin});
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

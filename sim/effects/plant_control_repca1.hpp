@@ -168,7 +168,6 @@ struct Model {
     values.refuse_negative({dbd2, fdbd2, Kp, Ki, Kpg, Kig, Ddn, Dup});
     values.refuse_positive({dbd1, fdbd1});
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -56,7 +56,6 @@ struct Model {
       problems.add(fmt::format("duration = {:g} s", p[duration]), where, "a duration cannot be negative",
                    "give duration >= 0");
   }
-  static std::string_view unphysical(const double*) { return ""; }
   static std::vector<double> switching_times(const double* p) {
     std::vector<double> all;
     for (int k = 0; k < kMoves; ++k) {

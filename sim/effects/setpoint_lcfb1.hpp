@@ -63,7 +63,6 @@ struct Model {
     values.refuse_negative({FB, TPELEC, DB, EMAX, KP, KI, IRMAX},
                            "gains, times and widths cannot be negative");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -46,7 +46,6 @@ struct Model {
         problems.add(fmt::format("{} = {:g} s", parameters[i].name, p[i]), where, "a time cannot be negative",
                      fmt::format("give {} >= 0", parameters[i].name));
   }
-  static std::string_view unphysical(const double*) { return ""; }
   static std::vector<double> switching_times(const double* p) {
     const double closed = p[start] + p[closing], opens = closed + p[hold];
     return {p[start], closed, opens, opens + p[opening]};

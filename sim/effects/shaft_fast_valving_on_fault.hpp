@@ -63,7 +63,6 @@ struct Model {
         problems.add(fmt::format("{} = {:g} s", parameters[i].name, p[i]), where, "a time cannot be negative",
                      fmt::format("give {} >= 0", parameters[i].name));
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

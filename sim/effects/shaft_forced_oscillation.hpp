@@ -43,7 +43,6 @@ struct Model {
       problems.add(fmt::format("end = {:g} s with start = {:g} s", p[end], p[start]), where,
                    "an oscillation ends after its start", "give end > start");
   }
-  static std::string_view unphysical(const double*) { return ""; }
   static std::vector<double> switching_times(const double* p) { return {p[start], p[end]}; }
 
   template <class T>

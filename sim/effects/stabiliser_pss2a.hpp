@@ -52,7 +52,6 @@ struct Model {
   static void check(const double* p, const std::string& where, Problems& problems) {
     B::check_as(name, as_pss2b(p).data(), where, problems);
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

@@ -193,7 +193,6 @@ struct Model {
     values.require_above(VS2MAX, VS2MIN, "the range of the input must not be empty");
     values.require_ranges({{VSTMAX, VSTMIN}});
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -64,7 +64,6 @@ struct Model {
     values.refuse(!(p[PSSON] >= p[PSSOFF]), values.text(PSSON, PSSOFF),
                   "the ranges of on and off would overlap", "give PSSON >= PSSOFF");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   /// Returns the parameters of the PSS2B part without output limits, which act after the fourth lead-lag.
   template <class T>

@@ -43,7 +43,6 @@ struct Model {
     values.require_times({T3, T4});
     values.refuse_negative({HLIM}, "a limit of the magnitude cannot be negative");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -45,7 +45,6 @@ struct Model {
     values.require_times({T3, T5});
     values.refuse_negative({HLIM}, "the limits cross");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

@@ -75,7 +75,6 @@ struct Model {
                   "give p1 < p2 < p3 < p4");
     values.require_positive({spd1, spd2}, "a running turbine has a speed > 0");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

@@ -35,7 +35,6 @@ struct Model {
     refuse(X, !(p[X] >= 0), "a leakage reactance cannot be negative", "give X >= 0");
     refuse(ratio, !(p[ratio] > 0), "voltages of both sides have the same sign", "give a ratio near 1");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void impedance(const T* p, T& r, T& x, T& n) {

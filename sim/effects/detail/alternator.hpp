@@ -15,8 +15,6 @@ struct Alternator {
   /// Weight in step control of the regulator's inputs, which affect Efd with a gain of hundreds.
   static constexpr double kErrorWeight = 10.0;
 
-  static std::string_view unphysical(const double*) { return ""; }
-
  protected:
   template <class T>
   static void prepare_alternator(const T* p, T* c) {

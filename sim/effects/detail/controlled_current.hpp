@@ -30,7 +30,6 @@ struct ControlledCurrent {
   static constexpr double kNoFrequency =
       1e-3;  ///< voltage below which the measured frequency fades to f0 [pu]
 
-  static std::string_view unphysical(const double*) { return ""; }
   template <class T>
   static void source_impedance(const T*, T& r, T& x) {
     r = T(0.0);

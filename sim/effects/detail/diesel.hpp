@@ -64,7 +64,6 @@ struct Diesel {
                   "the control box is then bypassed", "give T2 = T3 = 0 with T1 = 0");
     values.require_above(M::TMAX, M::TMIN, "the range of the throttle must not be empty");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

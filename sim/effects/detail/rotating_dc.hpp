@@ -51,7 +51,6 @@ struct RotatingDc {
   /// Checks the parameters; `bypassed`: time constants that may be zero.
   static void check_with(std::initializer_list<int> bypassed, const double* p, const std::string& where,
                          Problems& problems);
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {

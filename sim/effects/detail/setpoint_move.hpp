@@ -20,7 +20,6 @@ struct SetpointMove {
     if (!(start >= 0))
       problems.add(fmt::format("start = {:g} s", start), where, "a run begins at 0 s", "give start >= 0");
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static std::string steady(const T*, T*, Signals<T>&, T*) {

@@ -36,7 +36,6 @@ struct SimplifiedExciter {
     values.require_above(EMAX, EMIN,
                          fmt::format("the range of {} must not be empty", Model::states[output].name));
   }
-  static std::string_view unphysical(const double*) { return ""; }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
