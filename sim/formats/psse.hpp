@@ -1,5 +1,5 @@
 #pragma once
-// Readers of PSS/E .raw (versions 23 to 35), .rawx and .dyr files, and the writer of .raw files.
+// Readers of PSS/E .raw (versions 23 to 35), .rawx and .dyr files.
 #include <filesystem>
 #include <map>
 #include <optional>
