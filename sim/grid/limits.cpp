@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-
 namespace swingbank::sim::grid {
 namespace {
 
