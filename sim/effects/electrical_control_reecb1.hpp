@@ -56,15 +56,11 @@ struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::
   template <class T>
   static void evaluate(const T* c, const T* x, Signals<T>& s, T* dx) {
     const T Vf = Core::measure(c, x, s, dx);
-    const T runs = T(1.0) - voltage_dip_of(c, s);
+    const T runs = T(1.0) - renewable::voltage_dip(s.V, c[Core::vdip], c[Core::vup]);
     const T injected = Core::ride_through(c, Vf);
     Core::commands(
         c, x, Vf, Vf, runs, c[Core::pneed] + s.Pext, {c[Core::imax], T(0.0), c[Core::imax]},
         [&](const T& Iq) { return Iq + injected; }, renewable::as_it_is, renewable::as_it_is, s, dx);
-  }
-  template <class T>
-  static T voltage_dip_of(const T* c, const Signals<T>& s) {
-    return renewable::voltage_dip(s.V, c[Core::vdip], c[Core::vup]);
   }
   template <class T>
   static std::string steady(const T*, T* c, Signals<T>& s, T* x) {

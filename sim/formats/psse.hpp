@@ -154,7 +154,5 @@ struct DyrSurvey {
 };
 /// Reads a .dyr and returns its errors. Throws InputError only if the file cannot be read at all.
 DyrSurvey survey_dyr(const std::filesystem::path& file);
-/// The same for a string; `name` replaces the file name in messages.
-DyrSurvey parse_dyr_survey(const std::string& text, const std::string& name);
 
 }  // namespace swingbank::sim::formats

@@ -248,8 +248,5 @@ std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& nam
 DyrSurvey survey_dyr(const std::filesystem::path& file) {
   return DyrReader(psse::read_lines(file), file.string(), {}).survey();
 }
-DyrSurvey parse_dyr_survey(const std::string& text, const std::string& name) {
-  return DyrReader(psse::lines_of(text), name, {}).survey();
-}
 
 }  // namespace swingbank::sim::formats

@@ -12,9 +12,6 @@ double mean(const std::vector<double>& x, std::size_t count) {
   return std::accumulate(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(count), 0.0) /
          static_cast<double>(count);
 }
-}  // namespace
-
-namespace {
 
 /// Returns a + share (b - a).
 Inputs between(const Inputs& a, const Inputs& b, double share) {
