@@ -59,7 +59,7 @@ void take_output(int pipe, pid_t child, double limit, ProgramEnd& ended) {
 
 [[noreturn]] void cannot_start(const std::filesystem::path& program, int error) {
   throw InputError(
-      {"a program that does not start", program.string(), std::strerror(error), "check that it can be run"});
+      {"cannot start the program", program.string(), std::strerror(error), "check that it can be run"});
 }
 
 }  // namespace

@@ -117,8 +117,8 @@ void unknown(const toml::table& table, const std::string& prefix, const std::set
     else
       problems.add(
           "unknown key " + full, place(name, key.source().begin),
-          prefix.empty() ? "nothing reads it"
-                         : "nothing reads it in [" + prefix.substr(0, prefix.size() - 1) + "]",
+          prefix.empty() ? "Swingbank has no such key"
+                         : "Swingbank has no such key in [" + prefix.substr(0, prefix.size() - 1) + "]",
           known.empty() ? "remove it" : choose_from(key.str(), known, missing, "remove it or use one of: "));
   }
 }
@@ -168,9 +168,9 @@ class KeyLengths {
     for (int more = 0; lines && more < 2 && at_ < text_.size() && text_[at_] == quote; ++more) ++at_;
   }
   [[noreturn]] void refuse() const {
-    throw InputError({fmt::format("a key of more than {} parts", kMostKeyParts),
+    throw InputError({fmt::format("a key nested deeper than {} levels", kMostKeyParts),
                       fmt::format("{}:{}:{}", name_.string(), line_, at_ - begin_ + 1),
-                      "such deep nesting is not supported", "write a key of fewer parts"});
+                      "such deep nesting is not supported", "write a key with fewer levels"});
   }
 
   std::string_view text_;
@@ -262,9 +262,9 @@ bool Config::take(const std::string& key, T& value, const Range& range) {
   T found{};
   if (!convert(*n, found)) {
     problem(key, key + " = " + written(*n), "it must be " + kind(static_cast<const T*>(nullptr)),
-            "write such a value");
+            "correct the value");
   } else if (!inside(found, range)) {
-    problem(key, key + " = " + written(*n), "it must be " + describe(range), "give such a value");
+    problem(key, key + " = " + written(*n), "it must be " + describe(range), "correct the value");
   } else {
     value = std::move(found);
   }
@@ -306,7 +306,7 @@ std::string Config::choice(const std::string& key, const std::vector<std::string
   std::string word = otherwise;
   if (!take(key, word, {}) || word.empty()) return word;
   if (std::find(words.begin(), words.end(), word) == words.end())
-    problem(key, key + " = '" + word + "'", "there is no such choice",
+    problem(key, key + " = '" + word + "'", "this value is not allowed",
             choose_from(word, words, words, "use one of: "));
   return word;
 }

@@ -31,7 +31,7 @@ std::string remedy_for(int error) {
     case EACCES:
     case EPERM:
     case EROFS:
-      return "choose a folder you may write to, or mend its permissions";
+      return "choose a writable folder, or correct its permissions";
     case ENOTDIR:
     case EEXIST:
       return "choose another folder: a file has this name";

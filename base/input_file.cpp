@@ -38,7 +38,7 @@ std::string reason(const fs::path& file) {
   std::error_code error;
   if (fs::is_directory(file, error)) return "it is a folder";
   if (fs::exists(file, error) && !fs::is_regular_file(file, error))
-    return "it is a pipe or a device, which may have no end; write what it gives into a file";
+    return "it is a pipe or a device, whose data may never end; save the data in a file";
   if (fs::exists(file, error)) {
     errno = 0;
     const bool opens = std::ifstream(file, std::ios::binary).is_open();
@@ -46,8 +46,8 @@ std::string reason(const fs::path& file) {
     return fs::is_empty(file, error) ? "it is empty" : "it cannot be read";
   }
   std::string why =
-      is_pattern(file) ? "there is no such file, and none that matches" : "there is no such file";
-  if (file.is_relative()) why += "; it was looked for in " + fs::current_path(error).string();
+      is_pattern(file) ? "there is no such file, and no file matches this pattern" : "there is no such file";
+  if (file.is_relative()) why += "; searched in " + fs::current_path(error).string();
   return why;
 }
 
@@ -72,8 +72,8 @@ Problem unreadable(const fs::path& file, const std::string& what, const std::str
   const fs::path example = fs::exists(file, ignored) ? fs::path() : example_of(file, examples);
   if (example.empty()) return {what, file.string(), reason(file), remedy};
   return {what, file.string(), reason(file),
-          "Swingbank's example is " + example.string() + ": give that, or run cp -r " + examples.string() +
-              " . once to have all examples here"};
+          "Swingbank's example is " + example.string() + ": use that file, or run cp -r " +
+              examples.string() + " . to copy all examples to the current folder"};
 }
 
 std::string read_input(const fs::path& file, const std::string& what, const std::string& remedy) {

@@ -45,10 +45,10 @@ OutputFolder::OutputFolder(fs::path folder, std::string command, const std::vect
   std::error_code none;
   created_ = !fs::exists(folder_, none);
   make_folder(folder_);
-  lock_.emplace(
-      folder_ / kLockFile,
-      LockWords{"output folder in use", "--out " + folder_.string(), "wait for it, or give another folder"},
-      std::chrono::milliseconds(0));
+  lock_.emplace(folder_ / kLockFile,
+                LockWords{"output folder in use", "--out " + folder_.string(),
+                          "wait until that run ends, or give another folder"},
+                std::chrono::milliseconds(0));
   // Read again, because the previous holder of the lock may have changed the list.
   earlier_ = read_list(list_file(folder_, command_));
 }

@@ -26,7 +26,7 @@ inline std::filesystem::path own_folder() {
   std::error_code error;
   const auto program = own_executable(error);
   if (error)
-    throw InputError({"no folder of the commands", "/proc/self/exe", error.message(),
+    throw InputError({"cannot find the folder of Swingbank's commands", "/proc/self/exe", error.message(),
                       "mount /proc, or start swingbank by its path"});
   return program.parent_path();
 }
@@ -59,8 +59,7 @@ inline int run_own(const std::filesystem::path& program, const std::vector<std::
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
   ::execv(name.c_str(), words.data());
-  throw InputError(
-      {"a command that cannot be started", name, ::strerror(errno), "build or install it again"});
+  throw InputError({"cannot start the command", name, ::strerror(errno), "build or install it again"});
 }
 
 /// Temporary folder, removed with its content by the destructor.
@@ -69,7 +68,8 @@ class Scratch {
   Scratch() {
     std::string pattern = (std::filesystem::temp_directory_path() / "swingbank-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr)
-      throw InputError({"no scratch folder", pattern, std::string(::strerror(errno)), "set TMPDIR"});
+      throw InputError({"cannot create a temporary folder", pattern, std::string(::strerror(errno)),
+                        "set TMPDIR to a writable folder"});
     folder_ = pattern;
   }
   Scratch(const Scratch&) = delete;

@@ -24,8 +24,8 @@ constexpr double kPatience = 300.0;          ///< wall-clock limit [s]: slow dis
 constexpr rlim_t kProcessorTime = 30;        ///< processor time limit [s]: endless loop on a damaged file
 constexpr std::uintmax_t kSlow = 5'000'000;  ///< rate by which both limits grow with the file size [bytes/s]
 constexpr int kProblemsReported = 3;         ///< exit code: the output is a list of problems
-constexpr const char* kWhat = "a file that cannot be read";
-constexpr const char* kRemedy = "get the file again from where it came from, or make it again";
+constexpr const char* kWhat = "cannot read the file";
+constexpr const char* kRemedy = "copy the file again from its source, or generate it again";
 
 /// Returns the problems in the reader's output; empty if it is not a list of problems.
 std::vector<Problem> problems_in(const std::string& text) {
@@ -42,17 +42,17 @@ std::vector<Problem> problems_in(const std::string& text) {
 }
 
 std::string way_to_end(const ProgramEnd& ended, double patience) {
-  if (ended.late) return "its reader had no end after " + std::to_string(static_cast<int>(patience)) + " s";
+  if (ended.late) return "reading did not end within " + std::to_string(static_cast<int>(patience)) + " s";
   if (WIFSIGNALED(ended.status))
-    return std::string("its reader was ended by a signal: ") + ::strsignal(WTERMSIG(ended.status));
-  return "its reader ended with code " + std::to_string(ended.code());
+    return std::string("a signal ended the reading process: ") + ::strsignal(WTERMSIG(ended.status));
+  return "the reading process ended with code " + std::to_string(ended.code());
 }
 
 }  // namespace
 
 std::string read_apart(const std::string& kind, const std::filesystem::path& file,
                        const std::vector<std::string>& words) {
-  const auto program = jobs::own_command("read-hdf5", "build or install swingbank whole");
+  const auto program = jobs::own_command("read-hdf5", "build or install all parts of Swingbank");
   std::vector<std::string> all{program.string(), kind, file.string()};
   all.insert(all.end(), words.begin(), words.end());
   std::error_code none;
@@ -83,7 +83,7 @@ int reply_apart(const std::filesystem::path& file, const std::function<std::stri
   } catch (const InputError& e) {
     for (const Problem& p : e.problems()) problems.push_back({p.what, p.where, p.why, p.remedy});
   } catch (const std::bad_alloc&) {
-    problems.push_back({kWhat, "its reader", "memory is short", "run it where there is more memory"});
+    problems.push_back({kWhat, "its reader", "too little memory", "use a machine with more memory"});
   }
   return write_all(STDOUT_FILENO, json_text(problems)) ? kProblemsReported : 1;
 }

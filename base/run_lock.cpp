@@ -47,7 +47,7 @@ RunLock::RunLock(std::filesystem::path file, LockWords words, std::chrono::milli
     for (;;) {
       open();
       if (try_lock()) {
-        if (is_the_one_of_that_name()) break;
+        if (still_has_its_name()) break;
       } else {
         if (std::chrono::steady_clock::now() >= end) refuse();
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -89,7 +89,7 @@ bool RunLock::try_lock() {
 
 /// Returns whether the locked file is still the file of this name. Another holder may have removed it between
 /// open and lock.
-bool RunLock::is_the_one_of_that_name() const {
+bool RunLock::still_has_its_name() const {
   struct stat held {
   }, named{};
   return ::fstat(fd_, &held) == 0 && ::stat(file_.c_str(), &named) == 0 && held.st_dev == named.st_dev &&

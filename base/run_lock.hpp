@@ -39,7 +39,7 @@ class RunLock {
   void open();
   /// Returns false if another process holds the lock.
   bool try_lock();
-  [[nodiscard]] bool is_the_one_of_that_name() const;
+  [[nodiscard]] bool still_has_its_name() const;
   [[noreturn]] void refuse() const;
   void write_owner() const;
 

@@ -120,9 +120,9 @@ Card card_of(const DatasetConfig& config, const std::string& kernel,
   for (const auto& [written, place] : named_files(config)) {
     const std::string name = fmt::format("{}/{}", card.files.size() + 1, place.filename().string());
     if (!replace_name(card.config, written, name))
-      throw InputError({"no card of the config", config.file.string(),
-                        "the name '" + written + "' appears there with escapes",
-                        "write the name between quotes as it is"});
+      throw InputError({"cannot write the card", config.file.string(),
+                        "the config writes the file name '" + written + "' with escape sequences",
+                        "write the name in quotes, without escape sequences"});
     card.files.push_back({name, read_text(place)});
   }
   return card;
@@ -149,10 +149,11 @@ Card read_card(const fs::path& where) {
   constexpr const char* kRemedy = "give the card.json of a dataset, or the dataset's folder";
   if (!is_sealed(text))
     throw InputError(
-        {"no card, or a damaged one", file.string(), "its sum is not that of its text", kRemedy});
+        {"damaged card, or a file that is not a card", file.string(), "its checksum is wrong", kRemedy});
   try {
     const auto j = nlohmann::json::parse(text);
-    if (j.at("format") != kCardFormat) throw std::runtime_error("its format is another");
+    if (j.at("format") != kCardFormat)
+      throw std::runtime_error(std::string("its format is not ") + kCardFormat);
     Card card;
     j.at("name").get_to(card.name);
     j.at("config").get_to(card.config);
@@ -163,7 +164,7 @@ Card read_card(const fs::path& where) {
     for (const auto& f : j.at("files")) card.files.push_back(file_of(f));
     return card;
   } catch (const std::exception& e) {
-    throw InputError({"a card of another format", file.string(), e.what(), kRemedy});
+    throw InputError({"unknown card format", file.string(), e.what(), kRemedy});
   }
 }
 

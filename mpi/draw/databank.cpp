@@ -32,7 +32,7 @@ Neighbours make_neighbours(const DatasetConfig& config) {
 constexpr std::uint64_t kBatch = 8192, kPiece = 256;
 
 std::string reasons(const Databank& bank) {
-  std::string text = fmt::format("{} too close", bank.too_close);
+  std::string text = fmt::format("{} closer than the minimum distance", bank.too_close);
   for (const auto& [why, count] : bank.refused) text += fmt::format(", {} {}", count, why);
   return text;
 }
@@ -122,9 +122,9 @@ class Drawer {
     try {
       bank_.values.reserve(points_ * bank_.dimensions);
     } catch (const std::exception&) {  // bad_alloc, length_error
-      throw InputError({fmt::format("no memory for a databank of {} samples", points_), config_.file.string(),
-                        fmt::format("they take {:.1f} GB", bytes * 1e-9),
-                        "ask for fewer draws, or for more faults per point"});
+      throw InputError({fmt::format("too little memory for a databank of {} samples", points_),
+                        config_.file.string(), fmt::format("they take {:.1f} GB", bytes * 1e-9),
+                        "lower `draws`, or raise fault.per_point"});
     }
   }
   /// Draws and tests the candidates of a batch on all cores.
@@ -179,10 +179,11 @@ class Drawer {
           "; at this acceptance rate all samples would need at least {:.1e} admissible candidates, and {:.1e} are "
           "allowed",
           *needed, patience_);
-    throw InputError({fmt::format("databank reached {} of {} samples", bank_.points(), points_),
-                      config_.file.string(), why,
-                      "ask for fewer draws, a smaller databank.distance or another databank.scale, or raise "
-                      "databank.candidates_per_point"});
+    throw InputError(
+        {fmt::format("databank reached {} of {} samples", bank_.points(), points_), config_.file.string(),
+         why,
+         "lower `draws` or databank.distance, choose another databank.scale, or raise fault.per_point or "
+         "databank.candidates_per_point"});
   }
 
   const DatasetConfig& config_;

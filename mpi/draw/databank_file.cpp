@@ -85,19 +85,20 @@ Databank read_databank(const std::filesystem::path& file, const DatasetConfig& c
   };
   if (!f.has_attribute("format") || f.text_attribute("format") != kFormat ||
       !f.has_attribute("databank_hash") || !f.has_attribute("values_hash"))
-    refuse("no databank", "it lacks the attributes of one");
+    refuse("not a databank file",
+           std::string("it needs the format ") + kFormat + ", databank_hash and values_hash");
   if (f.text_attribute("databank_hash") != databank_hash(config, base))
-    refuse("a databank of another config", "its boxes, policy, distance, seed or machine are others");
+    refuse("a databank of another config", "its boxes, policy, distance, seed or machine differ");
   const auto shape = f.shape("/parameters");
   if (shape.size() != 2 || shape[1] != config.box.size())
-    refuse("wrong shape of /parameters", "it has not a column per parameter of the config");
+    refuse("wrong shape of /parameters", "it must have one column per parameter of the config");
   if (shape[0] < points)
-    refuse("too few points", fmt::format("it has {}, the draws need {}", shape[0], points));
+    refuse("too few databank samples", fmt::format("it has {}, the draws need {}", shape[0], points));
   Databank bank;
   bank.dimensions = config.box.size();
   f.read("/parameters", bank.values);
   if (hash_of(bank.values) != f.text_attribute("values_hash"))
-    refuse("changed databank", "its points are not those that were written");
+    refuse("changed databank", "its checksum is wrong");
   bank.values.resize(points * bank.dimensions);
   return bank;
 }

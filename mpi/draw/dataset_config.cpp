@@ -22,7 +22,7 @@ namespace {
 std::vector<int> numbers(const std::vector<std::int64_t>& v) { return {v.begin(), v.end()}; }
 Range bus_number(std::string meaning) { return {1, 999997, "", std::move(meaning)}; }
 Range count(std::string meaning) { return {1, 1e10, "", std::move(meaning)}; }  // 1e10 rows are 400 TB
-const Range kShardDraws{1, 1e6, "", "events in a file, in place of its size"},
+const Range kShardDraws{1, 1e6, "", "events per shard, instead of shard_megabytes"},
     kSeed{0, 9e18, "", "seed of all random numbers"}, kRate{1.0, 1e5, "1/s", "sampling rate"};
 const Range kShardSize{0.001, 1e5, "MB", "size of a file"};
 constexpr double kUsualShard = 64.0;  ///< default size of a shard [MB], about 1 s of core time
@@ -50,7 +50,7 @@ void read_box(Config& c, const std::string& table, const sim::Effect& effect, co
     if (index < 0 || effect.parameters[static_cast<std::size_t>(index)].is_code()) {
       c.problem(key, (index < 0 ? "unknown parameter " : "parameter ") + name,
                 std::string(effect.name) +
-                    (index < 0 ? " has no such parameter" : " takes it as a code, which is never sampled"),
+                    (index < 0 ? " has no such parameter" : " uses it as a code; codes are not sampled"),
                 "use one of: " + parameter_list(effect));
       c.ignore(key);
       continue;
@@ -98,7 +98,8 @@ void read_effect_boxes(Config& c, const sim::library::EffectLibrary& library, st
     else if (effect->slot == sim::Slot::machine)
       why = "it is a machine, whose parameters are given in [vary.box]";
     else if (!is_varied(*effect))
-      why = "it is a " + std::string(sim::slot_name(effect->slot)) + ", no part of a plant's equations";
+      why = "it is a " + std::string(sim::slot_name(effect->slot)) +
+            ", which is not part of a plant's equations";
     else if (std::ranges::any_of(tables, known))
       why = "another table of this config names the same effect";
     else {
@@ -156,8 +157,8 @@ void read_case(Config& c, DatasetConfig& d) {
   if (c.has("frequency_hz"))
     o.raw.frequency_hz =
         c.require<double>("frequency_hz", {1.0, 1000.0, "Hz", "nominal frequency, for a network in .m"});
-  o.raw.version = static_cast<int>(c.optional<std::int64_t>(
-      "raw_version", 0, {0.0, 35.0, "", "version of the .raw; 0: as its head says"}));
+  o.raw.version = static_cast<int>(
+      c.optional<std::int64_t>("raw_version", 0, {0.0, 35.0, "", "version of the .raw; 0: from its header"}));
   o.net_generators = c.optional<bool>(
       "net_generators", false, {.meaning = "generators without a machine model become negative loads"});
   d.widen_limits = c.optional<bool>("widen_limits", false,
@@ -192,10 +193,10 @@ void read_vary(Config& c, DatasetConfig& d) {
                                                {.meaning = "ids of the varied units, in the same order"});
   if (!d.ids.empty() && d.ids.size() != d.generators.size())
     c.problem("vary.ids", fmt::format("{} ids for {} generators", d.ids.size(), d.generators.size()),
-              "each names the unit at the bus of the same place in vary.generators",
-              "give one for each, \"\" where the bus has one unit");
+              "entry i names the unit at entry i of vary.generators",
+              "give one entry for each, \"\" where the bus has one unit");
   for (const int number : repeated(d.generators))
-    c.problem("vary.generators", fmt::format("generator {} twice", number), "each varies once",
+    c.problem("vary.generators", fmt::format("generator {} twice", number), "a bus may appear once",
               "name it once");
   std::vector<Box> others;
   read_effect_boxes(c, d.library, others);
@@ -227,7 +228,7 @@ void read_fault(Config& c, FaultConfig& f) {
   f.r = c.optional<double>("fault.r", 0.0, {0.0, 1e3, "pu", "fault resistance, on the network's base"});
   f.x = c.optional<double>("fault.x", 0.0, {0.0, 1e3, "pu", "fault reactance, on the network's base"});
   f.per_point = static_cast<std::uint64_t>(
-      c.optional<std::int64_t>("fault.per_point", 1, count("faults for each point of the databank")));
+      c.optional<std::int64_t>("fault.per_point", 1, count("faults for each databank sample")));
 }
 
 /// Reads a time constant of the frequency filter. Records a problem if it is given but the channel frequency
@@ -243,8 +244,8 @@ void read_time_constant(Config& c, const std::string& key, bool frequency, doubl
 void read_record(Config& c, RecordConfig& r) {
   r.t_end = c.require<double>("record.t_end", {0.01, 1e4, "s", "duration of a record"});
   r.rate = c.require<double>("record.rate", kRate);
-  r.int16 = c.choice("record.storage", {"float32", "int16"}, "float32", {.meaning = "storage of a value"}) ==
-            "int16";
+  r.int16 = c.choice("record.storage", {"float32", "int16"}, "float32",
+                     {.meaning = "number format of a recorded value"}) == "int16";
   std::vector<std::string> known;
   for (const auto& k : sim::kChannels) known.emplace_back(k.name);
   known.emplace_back("frequency");
@@ -269,19 +270,22 @@ void read_record(Config& c, RecordConfig& r) {
 
 void read_databank(Config& c, DatabankConfig& b) {
   b.policy =
-      c.choice("databank.policy", {"physical", "literal"}, "physical",
-               {.meaning = "physical refuses Xd <= Xdp and similar orders, literal singular values only"}) ==
+      c.choice(
+          "databank.policy", {"physical", "literal"}, "physical",
+          {.meaning =
+               "physical: rejects implausible values such as Xd <= Xdp; literal: rejects singular equations only"}) ==
               "literal"
           ? Policy::literal
           : Policy::physical;
-  b.distance = c.require<double>("databank.distance",
-                                 {0.0, 1e6, "", "smallest Euclidean distance of two points; 0: plain draws"});
+  b.distance =
+      c.require<double>("databank.distance",
+                        {0.0, 1e6, "", "minimum Euclidean distance of two databank samples; 0: no minimum"});
   b.scaled =
       c.choice("databank.scale", {"raw", "scaled"}, "raw",
                {.meaning = "distance in the parameters' own units, or in widths of the box"}) == "scaled";
   b.candidates_per_point =
       c.optional<double>("databank.candidates_per_point", b.candidates_per_point,
-                         {1.0, 1e9, "", "candidates per point before the draw is aborted"});
+                         {1.0, 1e9, "", "maximum number of candidates per databank sample"});
 }
 
 /// Reads [operating_point], if present.
@@ -295,14 +299,15 @@ void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point)
       "operating_point.per_block", 2, count("draws that share one operating point")));
   interval("operating_point.loads", p.loads_low, p.loads_high,
            {0.01, 10.0, "", "[low, high] factor of all loads and all dispatch"});
-  p.load_spread = c.optional<double>("operating_point.load_spread", 0.0,
-                                     {0.0, 0.99, "", "independent factor of each load: 1 - s to 1 + s"});
+  p.load_spread = c.optional<double>(
+      "operating_point.load_spread", 0.0,
+      {0.0, 0.99, "", "s: each load is multiplied by an independent factor between 1 - s and 1 + s"});
   interval("operating_point.dispatch", p.dispatch_low, p.dispatch_high,
            {0.01, 10.0, "", "[low, high] factor of each generator's P"});
   p.voltage = c.optional<double>("operating_point.voltage", 0.0,
                                  {0.0, 0.2, "pu", "deviation of each controlled voltage, either way"});
   interval("operating_point.loading", p.loading_low, p.loading_high,
-           {0.001, 2.0, "", "[low, high] apparent power of a machine over its base"});
+           {0.001, 2.0, "", "[low, high] apparent power of a machine / its base"});
   p.oversized_share = c.optional<double>("operating_point.oversized_share", 0.0,
                                          {0.0, 1.0, "", "share of oversized machines"});
   interval("operating_point.oversized", p.oversized_low, p.oversized_high,
@@ -313,7 +318,7 @@ void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point)
   p.lines_out_low = static_cast<int>(low);
   p.lines_out_high = static_cast<int>(high);
   if (low != p.lines_out_low || high != p.lines_out_high)
-    c.problem("operating_point.lines_out", "a part of a line", "lines are counted", "give whole numbers");
+    c.problem("operating_point.lines_out", "a fraction of a line", "lines are counted", "give whole numbers");
   if (!p.draws_bases() && p.oversized_share > 0.0)
     c.problem("operating_point.oversized_share", "oversized machines without loading",
               "a machine's base is drawn from its loading", "give loading = [low, high] too");
@@ -339,12 +344,13 @@ void require_in_range(const Overrides& o) {
     if (value && !(*value >= range.low && *value <= range.high))
       problems.add(fmt::format("{:g}", *value), option,
                    fmt::format("it must lie between {:g} and {:g} {}", range.low, range.high, range.unit),
-                   "give such a number");
+                   "correct the number");
   };
   within(o.shard_megabytes, "--shard-megabytes", kShardSize);
   within(o.rate, "--rate", kRate);
   if (o.shard_megabytes && o.draws_per_shard)
-    problems.add("two sizes of a shard", "--shard-megabytes", "--draws-per-shard gives another", "give one");
+    problems.add("shard size given twice", "--shard-megabytes", "--draws-per-shard also gives it",
+                 "give one");
   problems.raise();
 }
 }  // namespace
@@ -356,7 +362,7 @@ namespace {
 std::optional<double> read_shard_size(Config& c, DatasetConfig& d) {
   if (c.has("draws_per_shard")) {
     d.draws_per_shard = static_cast<std::uint64_t>(c.require<std::int64_t>("draws_per_shard", kShardDraws));
-    c.exclude("shard_megabytes", "two sizes of a shard", "draws_per_shard gives another", "leave one out");
+    c.exclude("shard_megabytes", "shard size given twice", "draws_per_shard also gives it", "leave one out");
     return std::nullopt;
   }
   return c.optional<double>("shard_megabytes", kUsualShard, kShardSize);

@@ -16,7 +16,7 @@ namespace {
 void require_no_stop(const DatasetConfig& config) {
   if (stop_asked())
     throw InputError({"stopped on a signal", config.file.string(), "nothing was trained yet",
-                      "run the command again: it begins anew"});
+                      "run the command again: it starts from the beginning"});
 }
 
 }  // namespace

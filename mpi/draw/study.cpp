@@ -74,7 +74,7 @@ Study load_study(const DatasetConfig& config) {
       if (network.buses[i].type != sim::network::BusType::isolated && !network.buses[i].is_star())
         allow(static_cast<int>(i));
   if (s.fault_buses.empty())
-    problems.add("no bus to fault", config.file.string(), "fault.except leaves none of fault.buses",
+    problems.add("no bus to fault", config.file.string(), "fault.except excludes all of fault.buses",
                  "name more buses");
   problems.raise();
   return s;

@@ -107,8 +107,8 @@ void ItemQueue::end_if_overdue() const {
   for (const auto& [rank, given] : given_) {
     const double age = std::chrono::duration<double>(Clock::now() - given.since).count();
     if (age > shared_.limit)
-      end_run_(fmt::format("{} takes longer than {:g} s at rank {}", shared_.name(given.item), shared_.limit,
-                           rank));
+      end_run_(fmt::format("{} took longer than the limit of {:g} s at rank {}", shared_.name(given.item),
+                           shared_.limit, rank));
   }
 }
 

@@ -45,7 +45,7 @@ void require_one_variant(MPI_Comm world, const std::string& hash, const std::str
   MPI_Bcast(first, sizeof first, MPI_CHAR, 0, world);
   agree(world, "start", [&] {
     if (std::string(mine) != first)
-      throw InputError({"ranks that would make different data", fmt::format("rank {}", rank),
+      throw InputError({"ranks with different configs or builds", fmt::format("rank {}", rank),
                         fmt::format("it has {}, rank 0 has {}", mine, first),
                         "start the same build with the same config on every node, or a build for the common "
                         "instruction set (preset portable)"});
@@ -56,10 +56,10 @@ void allocate_values(std::vector<double>& values, std::size_t count, int rank) {
   try {
     values.resize(count);
   } catch (const std::bad_alloc&) {
-    throw InputError({"no memory for the databank", fmt::format("rank {}", rank),
+    throw InputError({"too little memory for the databank", fmt::format("rank {}", rank),
                       fmt::format("every rank holds all of it, {:.1f} MB",
                                   static_cast<double>(count * sizeof(double)) * 1e-6),
-                      "start fewer ranks on a machine, ask for more memory, or make fewer draws"});
+                      "start fewer ranks on a machine, ask for more memory, or lower `draws`"});
   }
 }
 

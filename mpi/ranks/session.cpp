@@ -25,8 +25,8 @@ void require_one_world(int size) {
     if (size > 1 || started <= 1) continue;
     std::fprintf(
         stderr,
-        "ranks that do not find one another at the launcher (it says by %s that it started %ld, MPI knows of "
-        "one): start them with the mpirun of the MPI that this program was built with; in a container the "
+        "unconnected ranks at the launcher (according to %s it started %ld ranks, but MPI connects only one): "
+        "start them with the mpirun of the MPI that this program was built with; in a container the "
         "host's launcher and the container's MPI must both be OpenMPI 4\n",
         name, started);
     MPI_Finalize();

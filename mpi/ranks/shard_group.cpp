@@ -91,8 +91,8 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
   // rank.
   if (!wait_for(request, problems.empty() ? 0.0 : kReportAfter)) {
     const std::string why = problems.front().sentence();
-    std::fprintf(stderr, "failure at rank %d of a group of %d (%s): the others are waited for\n", rank, size,
-                 why.c_str());
+    std::fprintf(stderr, "failure at rank %d of a group of %d (%s): waiting for the other ranks\n", rank,
+                 size, why.c_str());
     if (!wait_for(request, kOthersMayTake)) end_all_ranks(why.c_str());
   }
   if (first == size) return {};
@@ -112,7 +112,7 @@ void end_all_ranks(const char* why) {
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
   std::fprintf(stderr,
-               "failure at rank %d of %d (%s): the run ends on all ranks; what is finished is safe, run "
+               "failure at rank %d of %d (%s): the run ends on all ranks; finished work is safe, run "
                "the command again to continue\n",
                rank, size, why);
   std::fflush(nullptr);

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kDatasetFormat = "swingbank-dataset-2";
 constexpr const char* kInt16Dataset = "swingbank-dataset-3";  ///< older readers reject this format
 constexpr const char* kRestoreHeader =
-    "restore the file from a copy, or make the dataset again in an empty folder";
+    "restore the file from a copy, or generate the dataset again in an empty folder";
 constexpr const char* kRemake =
     "run generate with the dataset's config on this folder again: it generates the missing shards";
 
@@ -219,9 +219,9 @@ std::vector<double> config_numbers(const DatasetHeader& header, const std::strin
 
 void require_machines(const DatasetHeader& header, const fs::path& folder) {
   if (header.frequency > 0.0) return;
-  throw InputError({"no frequency and no held parameters", (folder / "dataset.json").string(),
-                    "an older version of the software made the dataset",
-                    "make the dataset again in an empty folder"});
+  throw InputError({"the header lacks the frequency and the fixed parameters",
+                    (folder / "dataset.json").string(), "an older version of Swingbank generated the dataset",
+                    "generate the dataset again in an empty folder"});
 }
 
 DatasetHeader read_header(const fs::path& folder) {
@@ -233,15 +233,14 @@ DatasetHeader read_header(const fs::path& folder) {
     const std::string text = read_text(file);
     DatasetHeader header = from_json(nlohmann::json::parse(text));
     if (!is_sealed(text))
-      throw InputError(
-          {"damaged dataset header", file.string(), "its sum is not that of its text", kRestoreHeader});
+      throw InputError({"damaged dataset header", file.string(), "its checksum is wrong", kRestoreHeader});
     return header;
   } catch (const nlohmann::json::exception& e) {
     throw InputError({"damaged dataset header", file.string(), e.what(), kRestoreHeader});
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& e) {
-    throw InputError({"dataset header of another kind", file.string(), e.what(),
+    throw InputError({"unknown format of the dataset header", file.string(), e.what(),
                       "use the version of the software that wrote it"});
   }
 }
@@ -269,10 +268,9 @@ Dataset open_dataset(const fs::path& folder, bool allow_incomplete) {
   }
   d.complete = d.shards.size() == d.shard_count();
   if (!d.complete && !allow_incomplete)
-    problems.add(
-        "unfinished dataset", folder.string(),
-        std::to_string(d.shards.size()) + " of " + std::to_string(d.shard_count()) + " shards are there",
-        kRemake);
+    problems.add("incomplete dataset", folder.string(),
+                 std::to_string(d.shards.size()) + " of " + std::to_string(d.shard_count()) + " shards exist",
+                 kRemake);
   problems.raise();
   d.hash = dataset_hash(d.shards);
   return d;
@@ -291,10 +289,10 @@ ShardData read_checked(const ShardInfo& s) {
     fail("a shard of another config",
          "its config hash is " + data.attributes.config_hash + ", the dataset's " + s.config_hash);
   if (const auto draws = data.draw_sample_id.size(); draws != s.draws)
-    fail("another number of draws",
+    fail("wrong number of draws",
          "it has " + std::to_string(draws) + ", the journal records " + std::to_string(s.draws));
   if (const auto outcomes = count_outcomes(data.draw_outcome, s.path); outcomes != s.outcomes)
-    fail("other outcomes", "it has " + text_of(outcomes) + ", the journal records " + text_of(s.outcomes));
+    fail("wrong outcomes", "it has " + text_of(outcomes) + ", the journal records " + text_of(s.outcomes));
   if (const auto found = hex(shard_hash(data)); found != s.hash)
     fail("changed shard", "its hash is " + found + ", the journal records " + s.hash);
   return data;

@@ -16,7 +16,7 @@ namespace swingbank::mpi::store::h5 {
 
 namespace {
 
-constexpr const char* kRemedy = "if the file is damaged, delete it and run the command that made it again";
+constexpr const char* kRemedy = "if the file is damaged, delete it and repeat the command that wrote it";
 
 /// Returns the innermost message on HDF5's error stack, which is the cause. Clears the stack.
 std::string reason() {
@@ -101,8 +101,7 @@ void File::fail(const std::string& what, const std::string& object) const {
 void File::fail_for(const std::string& why, const std::string& what, const std::string& object) const {
   const std::string where = name_.string() + (object.empty() ? "" : ":" + object);
   if (const int error = system_error(why)) raise_file_error(where, error, what);
-  throw InputError(
-      {what, where, why, "if the file is damaged, delete it and run the command that made it again"});
+  throw InputError({what, where, why, kRemedy});
 }
 
 File File::open(const std::filesystem::path& file) {
@@ -142,7 +141,7 @@ void File::close() {
   if (file_.reset() && !close_failed) return;
   // The cause of a failed close is reported once; later files fail without it.
   const std::string why = unreported_failed_close();
-  fail_for(why.empty() ? "something else could not be closed before" : why, "cannot complete the HDF5 file",
+  fail_for(why.empty() ? "another HDF5 object could not be closed" : why, "cannot complete the HDF5 file",
            "");
 }
 
@@ -150,7 +149,8 @@ template <class T>
 const T& File::found(const std::string& name, const char* what) const {
   const auto* value = contents_->find(name);
   const T* it = value == nullptr ? nullptr : std::get_if<T>(value);
-  if (it == nullptr) throw InputError({what, name_.string() + ":" + name, "the file has none", kRemedy});
+  if (it == nullptr)
+    throw InputError({what, name_.string() + ":" + name, "the file does not contain it", kRemedy});
   return *it;
 }
 
@@ -163,8 +163,7 @@ std::size_t File::values_apart(const std::string& object, hsize_t first, hsize_t
   if (a.kind != kind) refuse("an array of another type", "it holds " + a.kind + ", not " + kind);
   if (count == 0) return 0;
   if (a.shape.empty() || count > a.shape[0] || first > a.shape[0] - count)
-    refuse("rows that are not there",
-           "the array has " + std::to_string(a.shape.empty() ? 0 : a.shape[0]) + " of them");
+    refuse("missing rows", "the array has " + std::to_string(a.shape.empty() ? 0 : a.shape[0]) + " rows");
   return count * row_size(Shape(a.shape.begin(), a.shape.end()));
 }
 
@@ -213,7 +212,7 @@ Shape File::shape(const std::string& object) const {
 void File::too_large(const std::string& object, std::uint64_t values, std::size_t bytes) const {
   throw InputError({"an array too large to read", name_.string() + ":" + object,
                     std::to_string(values) + " values of " + std::to_string(bytes) +
-                        " bytes are more than its file or this machine's memory can hold",
+                        " bytes exceed the size of the file or the memory of this machine",
                     kRemedy});
 }
 

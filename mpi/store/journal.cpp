@@ -32,7 +32,7 @@ std::string journal_text(const JournalLine& l) {
 }
 
 JournalLine parse_journal_line(const std::string& text) {
-  if (!is_sealed(text)) throw std::runtime_error("its sum is not that of its text");
+  if (!is_sealed(text)) throw std::runtime_error("its checksum is wrong");
   const auto j = nlohmann::json::parse(text);
   JournalLine l;
   j.at("shard").get_to(l.shard);
@@ -67,8 +67,8 @@ bool is_journal(const std::filesystem::path& file) {
   return name.starts_with("journal") && name.ends_with(".jsonl");
 }
 
-constexpr const char* kMendJournal =
-    "run generate with --repair, which makes such shards again, or restore the file from a copy";
+constexpr const char* kRepairJournal =
+    "run generate with --repair, which generates these shards again, or restore the file from a copy";
 
 std::string place_of(const Placed& p) { return p.file.string() + ":" + std::to_string(p.number); }
 
@@ -83,7 +83,7 @@ std::vector<Placed> read_lines(const std::filesystem::path& file, Problems& dama
       lines.push_back({parse_journal_line(text.substr(at, stop - at)), file, number});
     } catch (const std::exception& e) {
       damaged.add("damaged journal line", file.string() + ":" + std::to_string(number), e.what(),
-                  kMendJournal);
+                  kRepairJournal);
     }
     at = stop + 1;
   }
@@ -101,7 +101,7 @@ std::vector<Placed> read_placed(const std::filesystem::path& folder, Problems& d
         all.push_back(std::move(line));
       } else if (Placed& other = all[first->second]; !(other.line == line.line)) {
         damaged.add("shard " + std::to_string(line.line.shard) + " twice", place_of(line),
-                    "it differs from " + place_of(other), kMendJournal);
+                    "it differs from " + place_of(other), kRepairJournal);
         other.doubtful = true;
       }
     }
@@ -154,7 +154,7 @@ Journal::Journal(std::filesystem::path file) : file_(std::move(file)) {
   const std::string text = read_text(file_);
   if (const auto whole = whole_lines(text);
       whole != text.size() && ::ftruncate(fd_, static_cast<off_t>(whole)) != 0)
-    raise_file_error(file_, errno, "cannot cut off the journal's half-written last line");
+    raise_file_error(file_, errno, "cannot remove the incomplete last line of the journal");
   flush_folder(file_.parent_path());
 }
 
@@ -175,7 +175,7 @@ void Journal::append(std::span<const JournalLine> lines) {
   const int error = add(text);
   if (error == 0) return;
   if (::ftruncate(fd_, before) != 0)
-    raise_file_error(file_, error, "cannot write the journal, and its last line may be cut short");
+    raise_file_error(file_, error, "cannot write the journal, and its last line may be incomplete");
   raise_file_error(file_, error, "cannot write the journal");
 }
 

@@ -54,7 +54,7 @@ class ManifestWords {
 std::uint64_t whole_number(std::string_view word) {
   std::uint64_t value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size()) throw std::runtime_error("no whole number");
+  if (error != std::errc{} || end != word.data() + word.size()) throw std::runtime_error("not an integer");
   return value;
 }
 
@@ -88,17 +88,18 @@ JournalLine manifest_line(std::string_view text) {
 }
 
 [[noreturn]] void damaged_manifest(const fs::path& file, const std::string& why) {
-  throw InputError({"damaged manifest", file.string(), why,
-                    "delete the file: the journals say the same, and generate writes it again"});
+  throw InputError(
+      {"damaged manifest", file.string(), why,
+       "delete the file: the journals contain the same data, and generate writes the file again"});
 }
 
 /// Returns the text between format line and checksum. Throws InputError if the checksum is wrong.
 std::string_view unsealed(const fs::path& file, std::string_view text) {
   const auto at = text.rfind(kManifestSum);
-  if (at == std::string_view::npos) damaged_manifest(file, "it has no sum");
+  if (at == std::string_view::npos) damaged_manifest(file, "it has no checksum");
   const auto body = text.substr(0, at);
   if (text.substr(at + kManifestSum.size()) != hex(XXH3_64bits(body.data(), body.size())) + "\n")
-    damaged_manifest(file, "its sum is not that of its text");
+    damaged_manifest(file, "its checksum is wrong");
   if (!body.starts_with(kManifestFormat))
     damaged_manifest(file, "it does not begin with " + std::string(kManifestFormat));
   return body.substr(kManifestFormat.size());

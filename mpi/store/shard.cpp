@@ -47,7 +47,7 @@ ShardAttributes read_attributes(const h5::File& f, const fs::path& file) {
 std::string text_of(const h5::Shape& shape) {
   std::string text;
   for (const auto n : shape) text += (text.empty() ? "" : " x ") + std::to_string(n);
-  return text.empty() ? "a single value" : text;
+  return text.empty() ? "a scalar" : text;
 }
 
 void require_array(const h5::File& f, const fs::path& file, const char* name, const h5::Shape& expected) {
@@ -60,7 +60,7 @@ void require_array(const h5::File& f, const fs::path& file, const char* name, co
 void read_shape(const h5::File& f, const fs::path& file, const ShardShape* dataset, RowBlock& out) {
   const auto records = f.shape("/records"), parameters = f.shape("/parameters");
   if (records.size() != 3 || parameters.size() != 2 || parameters[0] != records[0])
-    bad_shard(file, "shapes that do not agree",
+    bad_shard(file, "inconsistent shapes",
               "/records must be rows x channels x samples and /parameters rows x parameters");
   if (dataset != nullptr) {
     require_array(f, file, "/records", {dataset->rows, dataset->channels, dataset->samples});

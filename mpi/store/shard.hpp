@@ -57,7 +57,8 @@ constexpr std::size_t kFaultColumns = 5;    ///< bus number, t_on [s], t_off [s]
 constexpr std::size_t kScaleColumns = 2;    ///< offset, step
 constexpr std::size_t kRedrawnColumns = 2;  ///< no power flow, implausible
 /// Remedy for a damaged shard.
-constexpr const char* kRepairDataset = "run generate with --repair on the dataset: it makes the shard anew";
+constexpr const char* kRepairDataset =
+    "run generate with --repair on the dataset: it generates the shard again";
 /// Outcome of a draw with inadmissible parameters, in /draws/outcome. The values 0 ... 3 are sim::Outcome.
 constexpr std::uint8_t kRefused = 4;
 /// Returns the name of an outcome in /draws/outcome, for example "stable".

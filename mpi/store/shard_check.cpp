@@ -56,9 +56,9 @@ void end_reader(Reader& r) {
   r.pipe = -1;
   const int status = wait_for_child(r.process);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
-  throw InputError({"the reading of shards broke off", "process " + std::to_string(r.process),
+  throw InputError({"a process that read shards ended early", "process " + std::to_string(r.process),
                     WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "its reason is reported above",
-                    "run the command again, with fewer --processes if memory is short"});
+                    "run the command again, with fewer --processes if memory is insufficient"});
 }
 
 Reader start_reader(const std::function<int(int)>& work) {
@@ -70,7 +70,8 @@ Reader start_reader(const std::function<int(int)>& work) {
   };
   const pid_t child = piped ? start_child(read, SIGKILL) : -1;
   if (child < 0)
-    throw InputError({"a process cannot be started", "--processes", std::strerror(errno), "ask for fewer"});
+    throw InputError(
+        {"a process cannot be started", "--processes", std::strerror(errno), "give a smaller number"});
   ::close(ends[1]);
   return {child, ends[0], {}};
 }

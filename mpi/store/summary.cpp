@@ -23,10 +23,10 @@ std::string describe_attempts(const std::filesystem::path& folder) {
     text += fmt::format("  {}  {} ranks on {}{}, {} shards found: {}\n", a.started, property("ranks"),
                         property("host"), property("part").empty() ? "" : ", part " + property("part"),
                         property("shards_found"),
-                        a.ended.empty() ? "killed, or still at work" : a.outcome + " at " + a.ended);
+                        a.ended.empty() ? "killed, or still running" : a.outcome + " at " + a.ended);
   }
   if (attempts.empty()) return {};
-  return fmt::format("{} attempts; survived: {} killed, {} failed, {} shards made anew\n", attempts.size(),
+  return fmt::format("{} attempts: {} killed, {} failed; {} shards generated again\n", attempts.size(),
                      killed, failed, repaired) +
          text;
 }
@@ -45,7 +45,7 @@ std::string describe(const Dataset& d) {
         100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::uint64_t>(draws, 1)));
   if (const auto& points = d.operating_points; !points.empty()) {
     const auto count = [&](const char* name) { return points.contains(name) ? points.at(name) : 0; };
-    text += fmt::format("  {} operating points; drawn again: {} without a power flow, {} implausible\n",
+    text += fmt::format("  {} operating points; rejected: {} without a power flow, {} implausible\n",
                         count("used"), count("no_power_flow"), count("implausible"));
   }
   return text + fmt::format("  config {}  dataset {}\n", d.config_hash, d.complete ? d.hash : "unfinished");

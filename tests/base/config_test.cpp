@@ -48,7 +48,7 @@ TEST(StrictConfig, RefusesKeysOfVeryManyParts) {
       Config c(text, "deep.toml");
       ADD_FAILURE() << text.substr(0, 40);
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("a key of more than 32 parts at deep.toml:2:"))
+      EXPECT_THAT(error.what(), HasSubstr("a key nested deeper than 32 levels at deep.toml:2:"))
           << text.substr(0, 40);
     }
 }
@@ -93,7 +93,7 @@ TEST(StrictConfig, SuggestsOnlyKeysThatTheTableLacks) {
   Config full("Xd = 1.8\nXdd = 0.3\n", "c.toml");
   full.require<double>("Xd");
   EXPECT_EQ(sentence_of(full),
-            "unknown key Xdd at c.toml:2:1 (nothing reads it): remove it or use one of: Xd");
+            "unknown key Xdd at c.toml:2:1 (Swingbank has no such key): remove it or use one of: Xd");
 }
 
 TEST(StrictConfig, UnknownTableIsNamedOnce) {

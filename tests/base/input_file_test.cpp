@@ -39,9 +39,8 @@ class InputFile : public ::testing::Test {
 };
 
 TEST_F(InputFile, MissingFileReportsTheFoldersSearched) {
-  EXPECT_EQ(sentence("mine.toml"),
-            "no plant file at mine.toml (there is no such file; it was looked for in " +
-                (root() / "here").string() + "): give another");
+  EXPECT_EQ(sentence("mine.toml"), "no plant file at mine.toml (there is no such file; searched in " +
+                                       (root() / "here").string() + "): give another");
   EXPECT_EQ(sentence("/nowhere/mine.toml"),
             "no plant file at /nowhere/mine.toml (there is no such file): give another");
 }

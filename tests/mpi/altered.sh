@@ -32,6 +32,6 @@ for edit in 's/"rows":/&1/' 's/"draws":20/"draws":21/' 's/"stable":/&1/' 's/"row
   cp -r "$work/data" "$bad"
   sed -i "/shard-000002/$edit" "$bad/journal.jsonl"
   cmp -s "$bad/journal.jsonl" "$work/data/journal.jsonl" && fail "nothing edited: $edit"
-  expect 1 "damaged journal line at $bad/journal.jsonl:3 (its sum is not that of its text)" "$verify" "$bad"
+  expect 1 "damaged journal line at $bad/journal.jsonl:3 (its checksum is wrong)" "$verify" "$bad"
   expect 0 "dataset $whole" "${make[@]}" --repair --out "$bad"
 done

@@ -60,6 +60,6 @@ expect 0 "accepted" "$SWINGBANK_BIN/swingbank-databank" "$configs/ieee39_genrou.
 [ "$(wc -l <"$work/bank.csv")" = 101 ] || fail "bank.csv has not a heading and 100 points"
 
 # Ranks started with different inputs do not mix their data.
-expect 1 "ranks that would make different data" mpirun --oversubscribe -np 1 "${make[@]}" --out "$work/mixed" : -np 1 "${make[@]}" --seed 2 --out "$work/mixed"
+expect 1 "ranks with different configs or builds" mpirun --oversubscribe -np 1 "${make[@]}" --out "$work/mixed" : -np 1 "${make[@]}" --seed 2 --out "$work/mixed"
 [ ! -e "$work/mixed" ] || fail "mixed ranks left a folder"
 wait $busy || fail "two at once on one folder"

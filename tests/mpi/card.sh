@@ -18,7 +18,7 @@ wait $pid 2>/dev/null || true
 "${make[@]}" >"$work/log" 2>&1 || { cat "$work/log"; fail "the second attempt"; }
 first=$(hash_of "$work/first")
 "$verify" "$work/first" >"$work/told"
-grep -q "2 attempts; survived: 1 killed, 0 failed, 0 shards made anew" "$work/told" || { cat "$work/told"; fail "attempts"; }
+grep -q "2 attempts: 1 killed, 0 failed; 0 shards generated again" "$work/told" || { cat "$work/told"; fail "attempts"; }
 
 cp "$work/first/card.json" "$work/card.json"
 rm -r "$work/configs"
@@ -55,7 +55,7 @@ PYTHON
 
 # A changed card and one of another processor are refused.
 sed 's/"seed": 5/"seed": 6/' "$work/card.json" >"$work/changed.json"
-expect 1 "no card, or a damaged one at $work/changed.json" "$generate" --again "$work/changed.json" --out "$work/x"
-expect 1 "two configs at --again" "$generate" "$configs/ieee39_gencls.toml" --again "$work/card.json" --out "$work/x"
+expect 1 "damaged card, or a file that is not a card at $work/changed.json" "$generate" --again "$work/changed.json" --out "$work/x"
+expect 1 "CONFIG in addition at --again" "$generate" "$configs/ieee39_gencls.toml" --again "$work/card.json" --out "$work/x"
 expect 1 "channel 'X' at --channels" "$generate" "$configs/ieee39_gencls.toml" --channels P X nonsense --out "$work/x"
 [ ! -e "$work/x" ] || fail "something was left"

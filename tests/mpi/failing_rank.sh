@@ -11,7 +11,7 @@ expect 1 "failure at rank 2 of 3 (only here)" \
 
 # Memory for the databank's copy on one rank only: 14 parameters of 20 million points are 2.2 GB.
 options=("$config" --draws 20000000 --faults-per-point 1 --draws-per-shard 1000000 --progress none)
-expect 1 "no memory for the databank at rank 1" \
+expect 1 "too little memory for the databank at rank 1" \
   on_two "$generate" "${options[@]}" --out "$work/memory" : -np 1 prlimit --as=1500000000 "$generate" "${options[@]}" --out "$work/memory"
 
 # A full disk on one rank, in a folder whose name is no UTF-8.

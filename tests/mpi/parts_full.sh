@@ -27,7 +27,7 @@ diff -r "$work/whole/shards" "$work/parts/shards" || fail "other bytes in parts"
 expect 0 "dataset $whole" "${make[@]}" --out "$work/parts" # nothing remains to be done
 
 # Another division, the same part twice, or a simultaneous whole run: refused.
-expect 1 "-of-3.jsonl, which cuts the dataset otherwise" "${make[@]}" --part 2/4 --out "$work/parts"
+expect 1 "-of-3.jsonl, which divides the dataset differently" "${make[@]}" --part 2/4 --out "$work/parts"
 expect 1 "it is no part k/n" "${make[@]}" --part 4/3 --out "$work/x"
 expect 1 "it is no part k/n" "${make[@]}" --part 2 --out "$work/x"
 [ ! -e "$work/x" ] || fail "a refused part left a folder"
@@ -49,7 +49,7 @@ expect 1 "it holds files but no dataset" "${make[@]}" --part 1/2 --out "$work/fo
 # A databank is accepted only for its own points.
 expect 1 "a databank of another config at $work/bank.h5" "${make[@]}" --seed 2 --databank "$work/bank.h5" --out "$work/y"
 "$SWINGBANK_BIN/swingbank-databank" "$configs/ieee14_genrou_bus3.toml" --points 10 --out "$work/few.h5" >/dev/null
-expect 1 "too few points at $work/few.h5 (it has 10" "${make[@]}" --databank "$work/few.h5" --out "$work/z"
+expect 1 "too few databank samples at $work/few.h5 (it has 10" "${make[@]}" --databank "$work/few.h5" --out "$work/z"
 "$python3" -c "import h5py, sys; h5py.File(sys.argv[1], 'r+')['parameters'][0, 4] += 0.125" "$work/bank.h5"
 expect 1 "changed databank at $work/bank.h5" "${make[@]}" --databank "$work/bank.h5" --out "$work/z"
 

@@ -94,7 +94,7 @@ void refuse_unknown(Config& config, const std::string& table, const std::vector<
   for (const auto& key : keys) {
     if (std::ranges::count(known, key) > 0) continue;
     const std::string full = table + "." + key, nearest = nearest_word(key, missing);
-    config.problem(full, "unknown key " + full, "nothing reads it in [" + table + "]",
+    config.problem(full, "unknown key " + full, "Swingbank has no such key in [" + table + "]",
                    fmt::format("remove it or use one of: {}{}", fmt::join(known, ", "),
                                nearest.empty() ? "" : "; did you mean " + nearest + "?"));
   }

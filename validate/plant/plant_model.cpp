@@ -117,7 +117,8 @@ std::vector<sim::plant::Block> read_several(Config& config, PlantModel& model, S
     for (const auto& p : block.effect->parameters) known.emplace_back(p.name);
     for (const auto& key : config.keys(section))
       if (!std::ranges::count(known, key))
-        config.problem(section + "." + key, "unknown key " + key, "nothing reads it in [[" + name + "]]",
+        config.problem(section + "." + key, "unknown key " + key,
+                       "Swingbank has no such key in [[" + name + "]]",
                        fmt::format("remove it or use one of: {}", fmt::join(known, ", ")));
     blocks.push_back(block);
   }

@@ -119,8 +119,8 @@ void require_same_cut(const fs::path& folder, const store::Part& part) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("journal-") && !name.ends_with(ending))
       throw InputError({fmt::format("part {} of {}", part.number, part.of), "--part",
-                        "the folder has the journal " + name + ", which cuts the dataset otherwise",
-                        "give parts as they were, or run without --part when no part runs any more"});
+                        "the folder has the journal " + name + ", which divides the dataset differently",
+                        "use the same --part as before, or omit --part once every part has ended"});
   }
 }
 
@@ -141,7 +141,7 @@ FolderLocks enter(const GenerateOptions& o, const store::DatasetHeader& header,
 std::vector<store::JournalLine> journalled(const GenerateOptions& o) {
   Problems damaged;
   auto lines = store::read_journals(o.folder, o.repair ? &damaged : nullptr);
-  for (const auto& p : damaged.list()) spdlog::warn("left out: {}", p.sentence());
+  for (const auto& p : damaged.list()) spdlog::warn("ignored: {}", p.sentence());
   std::erase_if(lines, [&](const auto& line) { return !o.part.has(line.shard); });
   return lines;
 }
@@ -149,7 +149,7 @@ std::vector<store::JournalLine> journalled(const GenerateOptions& o) {
 void settle(const fs::path& folder, const std::vector<store::BadShard>& bad, bool repair) {
   Problems problems;
   for (const auto& [shard, p] : bad) {
-    if (repair) spdlog::warn("to be made anew: {} at {} ({})", p.what, p.where, p.why);
+    if (repair) spdlog::warn("will be generated again: {} at {} ({})", p.what, p.where, p.why);
     if (!repair) problems.add(p.what, p.where, p.why, p.remedy);
   }
   problems.raise();

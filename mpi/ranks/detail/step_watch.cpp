@@ -10,7 +10,7 @@ namespace swingbank::mpi::ranks {
 namespace {
 void warn_slow_step(int rank, const std::string& step, const std::string& where,
                     std::chrono::duration<double> since, int error) {
-  std::fprintf(stderr, "rank %d has tried to %s %s for %g s%s%s: it hangs, or the disk is slow\n", rank,
+  std::fprintf(stderr, "rank %d has tried to %s %s for %g s%s%s: the rank hangs, or the disk is slow\n", rank,
                step.c_str(), where.c_str(), since.count(),
                error == 0 ? "" : "; the system: ", error == 0 ? "" : std::strerror(error));
   std::fflush(stderr);

@@ -110,7 +110,7 @@ TEST(DatabankDraw, ReportsProgress_WhenTheCountIsUnreachable) {
     FAIL() << "nothing thrown";
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr(" of 2000 samples at genrou.toml"));
-    EXPECT_THAT(e.what(), HasSubstr("too close"));
+    EXPECT_THAT(e.what(), HasSubstr("closer than the minimum distance"));
   }
 }
 

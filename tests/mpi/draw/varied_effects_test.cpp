@@ -84,9 +84,9 @@ TEST(VariedEffects, RefusalsNameLineAndRemedy) {
   EXPECT_THAT(refusal("effects.SEXS]", "effects.SEXES]"), HasSubstr("effect SEXES at "));
   EXPECT_THAT(refusal("effects.SEXS]\nK", "effects.GENROU]\nH"), HasSubstr("given in [vary.box]"));
   EXPECT_THAT(refusal("effects.SEXS]\nK = [20.0, 300.0]", "effects.ZIP]\np = [0.1, 0.2]"),
-              HasSubstr("it is a load, no part of a plant's equations"));
+              HasSubstr("it is a load, which is not part of a plant's equations"));
   EXPECT_THAT(refusal("effects.SEXS]\nK = [20.0, 300.0]", "effects.IEEET1]\nSwitch = [0.0, 1.0]"),
-              HasSubstr("takes it as a code, which is never sampled"));
+              HasSubstr("uses it as a code; codes are not sampled"));
   EXPECT_THAT(refusal("[vary.effects.SEXS]", "[vary.effects.sexs]\nEMAX = [4.0, 5.0]\n[vary.effects.SEXS]"),
               HasSubstr("names the same effect"));
   EXPECT_THAT(refusal("\"all:SEXS", "\"30:SEXS"),

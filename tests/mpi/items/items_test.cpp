@@ -55,7 +55,7 @@ TEST(OneProcessDeathTest, SlowItemEndsTheRunWithItsName) {
   shared.limit = 0.05;
   shared.name = [](std::size_t i) { return "plant " + std::to_string(i); };
   EXPECT_EXIT((void)OneProcess().share_items(shared), ::testing::ExitedWithCode(1),
-              "plant 1 takes longer than 0.05 s at rank 0");
+              "plant 1 took longer than the limit of 0.05 s at rank 0");
 }
 
 }  // namespace

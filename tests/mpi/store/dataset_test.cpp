@@ -147,11 +147,11 @@ TEST(DatasetFolder, VerifyDetectsWrongCountsInTheJournal) {
   const std::pair<std::function<void(JournalLine&)>, std::string> wrong[] = {
       {[](JournalLine& l) { l.rows = 1'000'000'000'000'000; }, "wrong shape of /records"},
       {[](JournalLine& l) { l.rows = 4; }, "wrong shape of /records"},
-      {[](JournalLine& l) { l.draws = 6; }, "another number of draws"},
+      {[](JournalLine& l) { l.draws = 6; }, "wrong number of draws"},
       {[](JournalLine& l) {
          l.outcomes = {{"stable", 4}, {"refused", 1}};
        },
-       "other outcomes"}};
+       "wrong outcomes"}};
   for (const auto& [edit, what] : wrong) {
     const TwoShards folder;
     edit_line(folder.path, edit);
@@ -204,7 +204,7 @@ TEST(DatasetFolder, HeaderDescribesTheMachines) {
   h.draws_per_shard = 1;
   write_header(folder.path, h);  // as an older version wrote it
   EXPECT_THAT(sentence_of([&] { require_machines(read_header(folder.path), folder.path); }),
-              HasSubstr("an older version of the software made the dataset"));
+              HasSubstr("an older version of Swingbank generated the dataset"));
   h.frequency = 50.0;
   h.generators = {30, 31};
   h.machine_base = {1000.0, 700.0};
