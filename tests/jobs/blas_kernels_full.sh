@@ -55,7 +55,7 @@ if ((status == 77)); then
 fi
 ((status == 0)) || fail "the disguise itself: $status"
 if [[ $best != SSE ]]; then
-  starts "a processor that OpenBLAS does not know" "^BLAS: OpenBLAS [0-9.]+ $name \(its own choice: Prescott\)" "$disguise"
+  starts "a processor that OpenBLAS does not know" "^BLAS: OpenBLAS [0-9.]+ $name \(chosen by OpenBLAS: Prescott\)" "$disguise"
   if grep -q "warning: .* kernels" "$work/said"; then fail "warned although all is well: $(cat "$work/said")"; fi
   starts "there, the user's wish" 'Prescott \(forced by OPENBLAS_CORETYPE=PRESCOTT\)' "$disguise" OPENBLAS_CORETYPE=PRESCOTT
 fi

@@ -46,6 +46,6 @@ assert 0 < mse["floor"] and mse["refined"] < 3 * mse["floor"], mse
 assert mse["refined"] < mse["closed-form"], mse
 PYTHON
 if network=floor judge "$work/data"; then fail "a floor without noise was made"; fi
-grep -q 'a floor without noise at --network floor' "$work/log" || fail "$(cat "$work/log")"
+grep -q 'method floor without noise at --network floor' "$work/log" || fail "$(cat "$work/log")"
 "$swingbank" tables "$work/out" --out "$work/tables" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
 grep -q 'not trained' "$work"/tables/*.md || fail "the table does not say that nothing was trained"

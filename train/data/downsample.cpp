@@ -60,7 +60,7 @@ double event_time(const mpi::store::DatasetHeader& d) {
   if (event.size() != 1)
     throw InputError({"no fault time", "form",
                       "the dataset's config has no fault.start, and the steady state is measured before it",
-                      "choose another form, or generate the dataset anew"});
+                      "choose another form, or generate the dataset with a config that has fault.start"});
   return event.front();
 }
 
@@ -80,7 +80,7 @@ Physics physics_of(const InputRecipe& recipe, const mpi::store::DatasetHeader& d
 
 SwingIntegrals swing_of(const InputRecipe& recipe, const mpi::store::DatasetHeader& d) {
   if (std::ranges::find(d.held_names, "Xdp") == d.held_names.end())
-    throw InputError({"no fixed X'd", "form", "the rotor's angle follows from the voltage behind X'd",
+    throw InputError({"X'd is not fixed", "form", "the rotor's angle follows from the voltage behind X'd",
                       "choose another form, or a dataset of GENCLS"});
   return {requested(recipe, d),
           {d.rate, event_time(d), recipe.start_s, recipe.end_s, d.frequency, frequency_filter(d)}};

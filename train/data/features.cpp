@@ -49,7 +49,7 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
               stream.dataset()
                   .channel_names[stream.selection().channels[g % stream.selection().channels.size()]] +
               " is constant",
-          stream.dataset().path.string(), "it contains no information and has no variance to normalise by",
+          stream.dataset().path.string(), "its variance is 0, so it cannot be normalised",
           "leave it out of the experiment's channels");
   }
   problems.raise();

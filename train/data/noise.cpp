@@ -64,11 +64,12 @@ RecordNoise::RecordNoise(const mpi::store::DatasetHeader& dataset, const NoiseRe
     const auto channel = known(name);
     if (!channel)
       problems.add("no noise model of channel " + name, dataset.name.empty() ? "dataset" : dataset.name,
-                   "no instrument measures it at the terminal", "read this dataset without noise");
+                   "the noise model covers measured channels only", "read this dataset without noise");
     channels_.push_back(channel.value_or(Noisy{}));
     if (channel && channel->kind == Kind::frequency && system_frequency_ <= 0)
       problems.add("no system frequency", dataset.name.empty() ? "dataset.json" : dataset.name,
-                   "an older version of the software made the dataset", "make it again in an empty folder");
+                   "an older version of Swingbank generated the dataset",
+                   "generate it again in an empty folder");
   }
   problems.raise();
   if (!recipe.training) return;

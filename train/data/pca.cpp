@@ -21,11 +21,11 @@ void check_shape(double rate, std::size_t samples, std::size_t components) {
   const auto per_second = static_cast<std::size_t>(std::lround(rate));
   Problems problems;
   if (std::abs(rate - static_cast<double>(per_second)) > 1e-9)
-    problems.add(fmt::format("{} samples per second", rate), "slice", "PCA works on whole seconds",
-                 "choose a slice that divides the rate");
+    problems.add(fmt::format("{} samples per second", rate), "slice",
+                 "PCA needs an integer number of samples per second", "choose a slice that divides the rate");
   else if (per_second == 0 || samples % per_second != 0)
     problems.add(fmt::format("a window of {} samples at {}/s", samples, per_second), "start_s, end_s",
-                 "PCA works on whole seconds", "make the window a whole number of seconds");
+                 "PCA needs an integer number of seconds", "make the window a whole number of seconds");
   else if (components > per_second)
     problems.add(fmt::format("{} components of {} samples", components, per_second), "pca_components",
                  "there cannot be more components than samples in a second",

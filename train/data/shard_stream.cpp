@@ -73,11 +73,12 @@ void ShardStream::take(const mpi::store::ShardData& shard) {
   rows_ += shard.rows;
   dataset_.rows = rows_;
   if (rows_ > options_.memory_limit / (kept() * sizeof(float)))
-    throw InputError({fmt::format("too little memory for the rows of {}", dataset_.name),
-                      fmt::format("shard {}", info.shard),
-                      fmt::format("{} rows of {} values are more than {:.1f} GB", rows_, kept(),
-                                  static_cast<double>(options_.memory_limit) * 1e-9),
-                      "raise --memory-limit, ask for fewer draws, or generate the dataset on a disk"});
+    throw InputError(
+        {fmt::format("too little memory for the rows of {}", dataset_.name),
+         fmt::format("shard {}", info.shard),
+         fmt::format("{} rows of {} values are more than {:.1f} GB", rows_, kept(),
+                     static_cast<double>(options_.memory_limit) * 1e-9),
+         "raise --memory-limit, lower --draws, or write the dataset to disk with `swingbank generate`"});
   keep_labels(shard, info);
   keep_series(shard, info);
   for (const auto& [name, count] : info.outcomes) dataset_.outcomes[name] += count;
@@ -105,14 +106,14 @@ void ShardStream::append(mpi::store::Dataset more) {
   Problems problems;
   const auto same = [&](bool equal, const char* what) {
     if (!equal)
-      problems.add(std::string("another ") + what, more.path.string(),
-                   "rows that only train must be of the same kind as those of " + d.path.string(),
+      problems.add(std::string("a different ") + what, more.path.string(),
+                   "additional training rows must be of the same kind as those of " + d.path.string(),
                    "generate them from a config with the same [record] and [vary]");
   };
   same(more.channel_names == d.channel_names, "list of channels");
   same(more.rate == d.rate && more.samples == d.samples, "rate or length");
   same(filter(more) == filter(d), "frequency filter");
-  same(start(more) == start(d), "instant of the fault");
+  same(start(more) == start(d), "start of the fault");
   same(more.machine_model == d.machine_model && more.parameter_names == d.parameter_names,
        "list of parameters");
   same(more.parameter_low == d.parameter_low && more.parameter_high == d.parameter_high, "sampling box");

@@ -79,7 +79,7 @@ std::size_t share(std::size_t count, double part) {
 
 void require_rows(const RowSplit& split, std::size_t points) {
   if (split.train.empty() || split.validation.empty() || split.test.empty())
-    throw InputError({fmt::format("only {} databank points", points), "dataset",
+    throw InputError({fmt::format("only {} databank samples", points), "dataset",
                       "training, validation and test each need some", "generate more draws"});
 }
 

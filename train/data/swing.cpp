@@ -69,7 +69,7 @@ SwingIntegrals::SwingIntegrals(const std::vector<std::string>& names, const Swin
   if (event_ < kAfterStep + 1 || start_ < event_ || !(length > 2 * kTaper))
     problems.add(fmt::format("window {} s to {} s with an event at {} s", window.start_s, window.end_s,
                              window.event_s),
-                 "start_s, end_s", "the integrals begin after the event and last longer than two tapers",
+                 "start_s, end_s", "the window must start after the event and be longer than two tapers",
                  "start at the latest end of the faults");
   problems.raise();
   steady_ = event_ - kAfterStep;

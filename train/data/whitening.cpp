@@ -48,7 +48,7 @@ Whitening Whitening::fit(const ShardStream& stream, std::span<const std::uint64_
   const InputSelection& s = stream.selection();
   if (components == 0 || components > s.samples)
     throw InputError({fmt::format("{} components of {} samples", components, s.samples), "pca_components",
-                      "a channel has at least 1 and at most as many as samples",
+                      "the number must be between 1 and the number of samples",
                       "choose a number in this range"});
   Whitening w;
   w.sizes_ = {s.outputs(),

@@ -33,7 +33,7 @@ class Rows {
     effect_ = sim::library::compiled().find(d.machine_model);
     if (!effect_ || !effect_->closed_form)
       problems.add("no closed form for " + d.machine_model, where,
-                   "none is implemented for this machine's equations",
+                   "the closed-form estimator does not support this machine model",
                    "leave closed-form and refined out of the preset's networks");
     const bool likely = method != Method::closed_form;
     if (effect_ && likely && !sim::direct::has_likelihood(*effect_))
@@ -188,7 +188,8 @@ std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint6
                              const std::function<void(std::size_t)>& report) {
   const auto which = static_cast<Method>(std::ranges::find(kMethods, method) - kMethods.begin());
   if (which == Method::floor && noise.level == 0)
-    throw InputError({"a floor without noise", "--network floor", "records without noise have none",
+    throw InputError({"method floor without noise", "--network floor",
+                      "without noise there is no Cramér-Rao bound",
                       "give --noise, or choose another method"});
   const Rows reader(d, which, noise);
   const std::size_t p = d.parameter_names.size();

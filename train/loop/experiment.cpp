@@ -72,12 +72,12 @@ Missing required_of(bool complete) { return complete ? Missing::refused : Missin
 void read_training(Config& c, const std::string& at, bool complete, TrainingRecipe& t) {
   Keys k(c, at, required_of(complete));
   k.whole("epochs", 1, t.epochs, "epochs of training");
-  k.whole("batch", 1, t.batch, "rows of a step");
+  k.whole("batch", 1, t.batch, "rows per training step");
   k.number("learning_rate", {1e-8, 1.0, "", "learning rate of Adam"}, t.learning_rate);
-  k.choice("schedule", kSchedules, t.schedule, "course of the learning rate");
+  k.choice("schedule", kSchedules, t.schedule, "schedule of the learning rate");
   k.whole("patience", 1, t.patience, "epochs without a better validation error before stopping");
   if (complete)
-    k.number("validation_share", {0.01, 0.5, "", "share of the databank points that validate"},
+    k.number("validation_share", {0.01, 0.5, "", "fraction of the databank samples used for validation"},
              t.validation_share);
   Keys extra(c, at, default_of(complete));
   extra.number("loss_power", {0.0, 1.0, "", "weight of a parameter's error: variance to this power"},
@@ -108,11 +108,11 @@ void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, Netw
   input.recipe.shows_level = t.noise_levels.has_value();
   if (t.noise_levels && input.recipe.form != data::InputForm::physics &&
       input.recipe.form != data::InputForm::swing)
-    c.problem(at + ".form", "training at many levels of noise",
+    c.problem(at + ".form", "training_noise with this form",
               "the noise level is an input, which only the forms physics and swing have",
               "choose one of these, or leave training_noise out");
   if ((t.kind == "swing") != (input.recipe.form == data::InputForm::swing))
-    c.problem(at + ".form", fmt::format("network {} with another input", t.kind),
+    c.problem(at + ".form", fmt::format("network {} with the wrong form", t.kind),
               "the network swing and the form swing need each other", "choose form = \"swing\" for it alone");
 }
 
@@ -129,15 +129,15 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   k.whole("pca_components", 0, i.pca_components, "principal components of each second of a channel; 0: none");
   Keys extra(c, at, default_of(complete));
   extra.flag("seconds_as_steps", i.recipe.seconds_as_steps,
-             "a second's components are one step of the series");
+             "the components of one second form one time step of the input");
   if (i.recipe.seconds_as_steps && i.pca_components == 0)
-    c.problem(at + ".seconds_as_steps", "seconds as steps of samples",
+    c.problem(at + ".seconds_as_steps", "seconds_as_steps without pca_components",
               "each step consists of the principal components of one second",
               "give pca_components, or leave it out");
   extra.flag("regressions", i.recipe.regressions,
              "also read the regressions of each signal on pairs of others");
   if (i.recipe.regressions && i.recipe.form != data::InputForm::physics)
-    c.problem(at + ".regressions", "regressions of another form",
+    c.problem(at + ".regressions", "regressions with the wrong form",
               "they are computed from the signals of the form physics",
               "choose form = \"physics\", or leave regressions out");
 }
@@ -191,7 +191,7 @@ Preset read_preset(Config& c, const std::string& name) {
         own + ".like", "", {.meaning = "earlier network of the preset that it copies"});
     if (!like.empty() && !p.training.contains(like))
       c.problem(own + ".like", fmt::format("no network called '{}' before '{}'", like, network),
-                "`like` refers to an earlier entry of the preset's networks", "put that one first");
+                "`like` refers to an earlier entry of the preset's networks", "list that network first");
     const bool copied = p.training.contains(like);
     p.input[network] = copied ? p.input[like] : input;
     p.judging[network] = copied ? p.judging[like] : judging;
@@ -199,8 +199,8 @@ Preset read_preset(Config& c, const std::string& name) {
     if (!copied) p.training[network].kind = network;
     const std::string& kind = p.training[network].kind;
     if (std::find(known.begin(), known.end(), kind) == known.end())
-      c.problem(at + ".networks", fmt::format("no network called '{}'", kind),
-                "train/networks has no such file", fmt::format("choose among {}", fmt::join(known, ", ")));
+      c.problem(at + ".networks", fmt::format("no network called '{}'", kind), "there is no such network",
+                fmt::format("choose among {}", fmt::join(known, ", ")));
     p.training[network].corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "",
                                             {.meaning = "method whose estimates it corrects"});
     if (!p.training[network].corrects.empty()) train_as_judged(p.training[network]);
@@ -210,7 +210,7 @@ Preset read_preset(Config& c, const std::string& name) {
     read_noise_levels(c, own, p.training[network], p.input[network]);
     refuse_unknown_posteriors(c, own, p.training[network]);
     if (p.training[network].training_rows && p.training_draws == 0)
-      c.problem(at + "." + network + ".training_rows", "no training-only rows",
+      c.problem(at + "." + network + ".training_rows", "training_rows without training_dataset",
                 "the experiment has no training_dataset, or the preset no training_draws", "give both");
   }
   return p;
@@ -227,10 +227,10 @@ Experiment read_experiment(Config& c) {
   if (c.has("training_dataset"))
     e.training_dataset =
         c.file("training_dataset",
-               {.meaning = "config of rows that only train, relative to the folder of this file"});
+               {.meaning = "config of additional training rows, relative to the folder of this file"});
   const std::string split =
       c.choice("split", {"leave-one-generator-out", "by-databank-point", "across-datasets"},
-               Range{.meaning = "split into rows that train and rows that judge"});
+               Range{.meaning = "split into training and test rows"});
   e.leave_one_out = split == "leave-one-generator-out";
   e.across = split == "across-datasets";
   if (e.leave_one_out)
@@ -242,7 +242,7 @@ Experiment read_experiment(Config& c) {
     for (const auto& [network, training] : e.presets[name].training)
       if (e.across && !training.training_rows)
         c.problem("preset." + name + ".training_rows", fmt::format("no rows that train {}", network),
-                  "with this split the rows of training_dataset alone train, and their mean is the baseline",
+                  "this split trains on training_dataset only; its mean is the baseline",
                   "add training_rows = true to the preset");
   }
   if (e.presets.empty())

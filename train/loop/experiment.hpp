@@ -78,7 +78,7 @@ struct Experiment {
   std::string table;  ///< "IV", "V" or "VI" of the thesis, else the file's name; part of result names
   std::string title;
   std::filesystem::path dataset;           ///< config of the dataset
-  std::filesystem::path training_dataset;  ///< config of rows that only train; empty: none
+  std::filesystem::path training_dataset;  ///< config of additional training rows; empty: none
   bool leave_one_out = false;              ///< leave-one-out split; if neither: 60/20/20
   bool across = false;                     ///< trains on training_dataset, tests on the whole `dataset`
   std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out; empty for a split

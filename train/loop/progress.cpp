@@ -26,7 +26,7 @@ void TrainingProgress::update(std::uint64_t done, const std::string& note) {
   const double rate = static_cast<double>(done - first_) / seconds;
   const double left = rate > 0.0 ? static_cast<double>(total_ - std::min(done, total_)) / rate : 0.0;
   const std::string text = fmt::format(
-      "{}: {} of {} samples ({:.0f} %), {:.0f} samples/s, {} left at most, {}", title_, done, total_,
+      "{}: {} of {} samples ({:.0f} %), {:.0f} samples/s, at most {} left, {}", title_, done, total_,
       100.0 * static_cast<double>(done) / static_cast<double>(total_), rate, duration(left), note);
   if (terminal_)
     fmt::print(stderr, "\r\033[K{}", text);

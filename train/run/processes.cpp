@@ -32,10 +32,8 @@ int wait_for(pid_t child, const std::vector<pid_t>& running) {
     const pid_t ended = waitpid(child, &status, WNOHANG);
     if (ended == child) {
       if (WIFEXITED(status)) return WEXITSTATUS(status);
-      fmt::print(
-          stderr,
-          "a process that trains folds was ended by signal {} ({}): run the same command again to continue\n",
-          WTERMSIG(status), strsignal(WTERMSIG(status)));
+      fmt::print(stderr, "signal {} ({}) ended a training process: run the same command again to continue\n",
+                 WTERMSIG(status), strsignal(WTERMSIG(status)));
       return 1;
     }
     usleep(50'000);
@@ -54,7 +52,7 @@ int run_processes(int count, const std::function<int(runtime::Place)>& work) {
       const int error = errno;
       end_all(children, SIGTERM);
       throw InputError({fmt::format("process {} of {} cannot be started", i + 1, count), "--processes",
-                        std::strerror(error), "ask for fewer"});
+                        std::strerror(error), "give a smaller number"});
     }
     children.push_back(child);
   }

@@ -110,7 +110,7 @@ RunOutcome run_direct(const PreparedRun& run, const std::filesystem::path& resul
   const RunRequest& r = run.request;
   const auto& rows = run.split.test;
   if (r.shuffle_labels)
-    throw InputError({"a control run of " + r.network, "--shuffle-labels", "it is not trained on labels",
+    throw InputError({"shuffled labels for " + r.network, "--shuffle-labels", "this method is not trained",
                       "leave it out, or choose a network"});
   loop::TrainingProgress progress(run_name(r), rows.size(), r.quiet);
   progress.line(fmt::format("{} test rows, nothing to train", rows.size()));
@@ -198,7 +198,7 @@ class NetworkRun {
     progress_.keep_chart();
     if (!trained.report.finished || (run_.recipe.posterior_epochs > 0 && !train_head(trained))) {
       progress_.line(
-          fmt::format("saved to {}; submit the same command again to continue", checkpoint_.string()));
+          fmt::format("saved to {}; run the same command again to continue", checkpoint_.string()));
       return std::nullopt;
     }
     // A network that corrects estimates is not saved, because it cannot be used without them.
@@ -237,7 +237,7 @@ class NetworkRun {
     SavedNetwork saved = SavedNetwork::load(file());
     if (saved.identity() != run_.training_identity) return false;
     trained = std::move(*saved.release());
-    progress_.line(fmt::format("trained already: {}", file().string()));
+    progress_.line(fmt::format("already trained: {}", file().string()));
     return true;
   }
   [[nodiscard]] std::vector<float> targets() const {
@@ -338,7 +338,8 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
     prepared.emplace(prepare(stream, r));
     if (ranks.size() > 1 && direct::is_method(r.network))
       throw InputError({fmt::format("{} ranks for {}", ranks.size(), r.network), "mpirun",
-                        "this method has no training that ranks could share", "start it without mpirun"});
+                        "this method is not trained, so ranks have nothing to share",
+                        "start it without mpirun"});
     const std::size_t batch = prepared->recipe.batch;
     if (static_cast<std::size_t>(ranks.size()) > batch)
       throw InputError({fmt::format("{} ranks", ranks.size()), "mpirun",

@@ -194,7 +194,7 @@ std::vector<networks::Target> targets_of(const NetworkInfo& info, const data::Ta
 fs::path find_file(const fs::path& path) {
   if (!fs::is_directory(path)) {
     if (fs::exists(path)) return path;
-    throw InputError(unreadable(path, "no network",
+    throw InputError(unreadable(path, "cannot read the network file",
                                 "give a .network file that train or cross-validate wrote beside its result"));
   }
   std::vector<fs::path> found;
@@ -202,8 +202,9 @@ fs::path find_file(const fs::path& path) {
     if (entry.path().extension() == ".network") found.push_back(entry.path());
   if (found.size() == 1) return found[0];
   std::ranges::sort(found);
-  throw InputError({found.empty() ? "no network" : fmt::format("{} networks", found.size()), path.string(),
-                    found.empty() ? "the folder holds no .network file" : "an estimate uses one network",
+  throw InputError({found.empty() ? "no network file" : fmt::format("{} network files", found.size()),
+                    path.string(),
+                    found.empty() ? "the folder contains no .network file" : "an estimate uses one network",
                     found.empty() ? "give a folder of results of train or cross-validate"
                                   : fmt::format("name one, for example {}", found[0].string())});
 }

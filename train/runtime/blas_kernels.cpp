@@ -138,7 +138,7 @@ BlasChoice choose_blas_kernels(const Processor& processor, const BlasFound& foun
   if (!found.alone.empty())
     return {"", Problem{fmt::format("{} kernels", found.core), "OpenBLAS",
                         fmt::format("{}={} was requested; {}", kAsked, found.asked, slow),
-                        "install Debian's libopenblas0-openmp, which has them all"}
+                        "install Debian's libopenblas0-openmp, which contains all kernels"}
                     .sentence()};
   return {"", Problem{fmt::format("{} kernels ({})", found.core, name_of(core->width)),
                       fmt::format("{}={}", kAsked, found.asked), slow,
@@ -150,7 +150,7 @@ std::string blas_name(const BlasFound& found) {
   const Text config = blas_function("openblas_get_config");
   if (!config || found.core.empty()) return "not OpenBLAS (slow: install libopenblas0-openmp)";
   const std::string_view version = std::string_view(config()).substr(0, std::strlen("OpenBLAS 0.3.21"));
-  const std::string why = !found.alone.empty()  ? fmt::format(" (its own choice: {})", found.alone)
+  const std::string why = !found.alone.empty()  ? fmt::format(" (chosen by OpenBLAS: {})", found.alone)
                           : found.asked.empty() ? ""
                                                 : fmt::format(" (forced by {}={})", kAsked, found.asked);
   return fmt::format("{} {}{}", version, found.core, why);

@@ -15,7 +15,7 @@ namespace swingbank::train::run {
 namespace {
 
 using nlohmann::json;
-constexpr SealedKind kGuesses{"file of guesses", "swingbank-guesses-1\n",
+constexpr SealedKind kGuesses{"file of starting estimates", "swingbank-guesses-1\n",
                               "remove it; it is then computed again"};
 constexpr auto kPatience = std::chrono::hours(12);  ///< longest wait for another process
 

@@ -22,9 +22,10 @@ void require_records(const data::ShardStream& stream, const RunRequest& r) {
   const bool reads =
       direct::is_method(r.network) || !r.experiment.training(r.preset, r.network).corrects.empty();
   if (reads && stream.from_memory())
-    throw InputError({"network " + r.network, "--simulate",
-                      "it reads whole records, which training from memory does not keep",
-                      "generate the dataset on a disk, or choose a network that reads series alone"});
+    throw InputError(
+        {"network " + r.network, "--simulate",
+         "it needs complete records; --simulate keeps only the network's input",
+         "write the dataset to disk with `swingbank generate`, or choose a network that reads series alone"});
 }
 
 data::RowSplit split_of(const data::Labels& labels, const RunRequest& r) {
