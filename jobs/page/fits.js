@@ -109,12 +109,12 @@ export function summary(m, before, events) {
   if (changed.length) {
     const most = changed.find((p) => Number.isFinite(p.by));
     const largest = most ? `, ${most.name} most (${most.by > 0 ? "+" : ""}${digits(most.by, 2)} %)` : "";
-    said.push(`Submitted parameters that moved: ${changed.length}${largest}.`);
+    said.push(`Changed parameters of the submitted model: ${changed.length}${largest}.`);
   }
   if (m.held_out.length) said.push(`Held out of this fit: ${m.held_out.join(", ")}.`);
   else if (m.kind === "added" && events > 1)
-    said.push("To test it on an event that the fit has not seen: undo, tick “hold out of fits” there, and add it again.");
-  if (m.kind === "added" && !m.evidence) said.push("The command at the foot of the page also computes the evidence.");
-  if (m.complete || m.fit) said.push("Save the model when you are content.");
+    said.push("To test it on an event that the fit has not seen: undo, tick “exclude from fits” there, and add it again.");
+  if (m.kind === "added" && !m.evidence) said.push("The command at the bottom of the page also computes the evidence.");
+  if (m.complete || m.fit) said.push("Save the model when you are satisfied.");
   return said.join(" ");
 }

@@ -291,7 +291,7 @@ function moved(name, value) {
   state.values[name] = value;
   by("verdict").textContent = "Trying …";
   by("verdict").className = "";
-  by("reason").textContent = "The curves of this event follow. All events are compared when you let go.";
+  by("reason").textContent = "The curves of this event change while you drag. All events are compared when you let go.";
   fly();
 }
 async function compareChanged() {
@@ -369,7 +369,7 @@ const save = onStep(async () => {
   const { step } = state;
   const saved = await api.save(step.step);
   by("saved").replaceChildren(
-    `Saved “${step.label}” (${times(step.ratio)} noise)${saved.replaced ? " in place of the files that were there" : ""}: `,
+    `Saved “${step.label}” (${times(step.ratio)} noise)${saved.replaced ? " replacing the existing files" : ""}: `,
     saved.files.join(", "),
     ". Check it: ",
     make("code", { textContent: saved.command }),
