@@ -202,10 +202,10 @@ int run(Arguments& a, plant::PlantModel& model) {
   a.of.open_results("calibrate", {kModel, kBiasedModel, kDyr, kCurveFit, jobs::kPage, "calibrate.json",
                                   jobs::kInterruptedModel, "calibrate-interrupted.json"});
   if (a.method == "curve-fit" && !(a.network.empty() && a.start.empty()))
-    throw InputError({"a network's start", "--method curve-fit",
+    throw InputError({"a start from a network", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
   if (a.sparse && (a.method != "fit" || !(a.network.empty() && a.start.empty())))
-    throw InputError({"a method or a start of its own", "--sparse", "it is a method of its own",
+    throw InputError({"a method or start with --sparse", "--sparse", "it selects its own method and starts",
                       "leave --method, --network and --start out"});
   if (a.method == "curve-fit") return run_baseline(a, model, set, truth);
   if (a.sparse) return run_sparse(a, model, set);
@@ -279,15 +279,19 @@ void declare(jobs::CommandLine& line, Arguments& a) {
   const jobs::Option network = line.add("--network", a.network,
                                         "trained network (file.network, or a folder with one): its estimate "
                                         "is one of the starts, and is shown beside the fit");
-  line.add("--start", a.start, "the same from the output of 'swingbank predict --out FILE'")
+  line.add("--start", a.start,
+           "estimate as with --network, from a file that 'swingbank predict --out FILE' wrote")
       .excludes(network);
   line.add("--truth", a.truth, "plant file (or blind-test's truth) to compare the parameters with");
   line.group("Expert");
-  line.add("--draws", o.draws, "parameter sets tried as starts").shows_default().between(0, 100000);
-  line.add("--starts", o.starts, "how many of them are refined, in addition to the model's own values")
+  line.add("--draws", o.draws, "number of random parameter sets tried as starts")
+      .shows_default()
+      .between(0, 100000);
+  line.add("--starts", o.starts,
+           "number of these sets that are refined, in addition to the model's own values")
       .shows_default()
       .between(0, 1000);
-  line.add("--seed", o.seed, "of the draws").shows_default();
+  line.add("--seed", o.seed, "seed of these parameter sets").shows_default();
   line.example("swingbank calibrate --model plant.toml --records fault1.csv fault2.csv --hold-out fault2");
   line.footer(std::string(thresholds::kExitCodes) +
               " Complete: the structure is adequate after calibration (curve-fit: the residual is noise).");

@@ -133,7 +133,7 @@ struct CommandLine::Parser {
               ? former->second
               : nearest_word(name, names());
       sentences.push_back(fmt::format(
-          "unknown option at '{}' ({} has none of that name): {}", name, app.get_name(),
+          "unknown option at '{}' ({} has no such option): {}", name, app.get_name(),
           nearest.empty() ? fmt::format("see {} --help", app.get_name()) : "did you mean " + nearest + "?"));
     }
     return sentences;

@@ -59,8 +59,8 @@ int run(CommandLine& line, int argc, char** argv) {
            "per core; 1 if mpirun or srun started several)");
   const auto check = [&](const train::run::RunRequest& request) {
     if (!request.experiment.leave_one_out)
-      throw InputError({"this experiment leaves no generator out", options.experiment, "see its split",
-                        "use swingbank train"});
+      throw InputError(
+          {"this experiment has no folds", options.experiment, "see its split", "use swingbank train"});
     if (processes < 0)
       throw InputError({fmt::format("{} processes", processes), "--processes",
                         "at least one process is needed", "use 1 or more"});

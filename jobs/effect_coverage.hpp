@@ -19,7 +19,7 @@ inline void print_coverage_text(const sim::grid::Coverage& coverage) {
                m.effect.empty() ? (m.missing_because.empty() ? "-" : "- (" + m.missing_because + ")")
                                 : m.slot + " " + m.effect);
   for (const auto& m : coverage.models)
-    if (m.refused > 0) fmt::print("\n{} x {} refused, as this: {}\n", m.refused, m.name, m.fault);
+    if (m.refused > 0) fmt::print("\n{} x {} refused, for example: {}\n", m.refused, m.name, m.fault);
   if (!coverage.faults.empty()) fmt::print("\nno records\n");
   for (const auto& fault : coverage.faults) fmt::print("  {}\n", fault);
 }

@@ -212,16 +212,16 @@ int run(const std::vector<std::string>& names, const std::vector<std::string>& u
     const bool begun =
         std::ranges::any_of(library.all(), [&](const Effect* e) { return e->name.starts_with(typed); });
     if (!chosen.back() && is_inverter(typed) && !begun)
-      problems.add("no effect '" + name + "'", "NAME",
+      problems.add("unknown effect '" + name + "'", "NAME",
                    "this model of inverters, wind or storage is not supported yet",
                    "list the supported ones with swingbank effects");
     else if (!chosen.back())
-      problems.add("no effect '" + name + "'", "NAME",
+      problems.add("unknown effect '" + name + "'", "NAME",
                    "the nearest names are " + nearest_names(library, name),
                    "choose one of these, or see them all with swingbank effects");
   }
   if (shape.toml && names.empty())
-    problems.add("--toml without an effect", "NAME", "a block is of one effect",
+    problems.add("--toml without an effect", "NAME", "--toml prints the block of one effect",
                  "name it; swingbank effects lists them all");
   problems.raise();
   const auto& shown = names.empty() ? library.all() : chosen;
@@ -252,11 +252,11 @@ int run(CommandLine& line, int argc, char** argv) {
       line.add("--user-model", user_models, "file (.toml) of a user-defined model; may be repeated")
           .one_value_a_mention();
   line.add("--coverage", dyr_files,
-           "PSS/E .dyr files: how many of their records the effects cover, model by model")
+           "PSS/E .dyr files: print for each model how many of its records Swingbank supports")
       .excludes(effects)
       .excludes(user_model);
   const jobs::Option json =
-      line.add_flag("--json", shape.json, "the same for machines: an array with one object per effect");
+      line.add_flag("--json", shape.json, "print as JSON: an array with one object per effect");
   line.add_flag("--toml", shape.toml, "the effect's block of a plant file with its default values, to paste")
       .excludes(json);
   line.example("swingbank effects SEXS --toml");

@@ -45,7 +45,7 @@ struct Reading {
     return line
         .add(
             "--columns", columns,
-            "which columns of the records are read: V=NAME,P=NAME (t, V, theta, f, P, Q, I, phi, speed, Efd, Ifd; of a component "
+            "columns of the records: V=NAME,P=NAME (t, V, theta, f, P, Q, I, phi, speed, Efd, Ifd; of a component "
             "also Vs, Vref, Pm, Pref, gate); "
             "\"V=NAME [kV]\" where the file names no unit, V=#2 for the second column, P=-NAME reverses the sign; "
             "in addition to [record.columns] of the plant file")
@@ -109,7 +109,7 @@ struct Reading {
     }
     if (from && until && !(*from < *until))
       problems.add(fmt::format("--from {:g} with --until {:g}", *from, *until), "--from",
-                   "nothing lies between them",
+                   "--from is not before --until",
                    "give --from an earlier time than --until, both in s of the record");
     problems.raise();
     if (from) model.reading.from = *from;

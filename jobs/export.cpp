@@ -52,9 +52,9 @@ int run(CommandLine& line, int argc, char** argv) {
   line.group("Input");
   line.add("--model", a.plant, "plant file (configs/plants/README.md)").required();
   line.add("--bus", a.bus, "number of the unit's bus (default: the plant file's)").positive();
-  line.add("--id", a.id, "the machine's id there (default: the plant file's, else 1)");
-  line.add("--bus-name", a.bus_name, "name of that bus, for a .dyd");
-  line.add("--kv", a.kv, "its nominal voltage [kV], for a .dyd (default: the plant file's base_kv)")
+  line.add("--id", a.id, "id of the machine at this bus (default: the plant file's, else 1)");
+  line.add("--bus-name", a.bus_name, "name of the bus, for a .dyd");
+  line.add("--kv", a.kv, "nominal voltage of the bus [kV], for a .dyd (default: the plant file's base_kv)")
       .positive();
   line.group("Output");
   line.add("--format", a.format, "dyr: records of PSS/E; dyd: lines of PSLF")

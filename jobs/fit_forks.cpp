@@ -130,8 +130,8 @@ std::optional<int> receive_socket(int control) {
 }
 
 [[noreturn]] void cannot_fork() {
-  throw InputError({"a fit cannot be started", "this machine", std::strerror(errno),
-                    "close other programs, and try again"});
+  throw InputError(
+      {"cannot start a fit", "this machine", std::strerror(errno), "close other programs, and try again"});
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ std::string plant_result(const FleetCommand& c, const fleet::FleetPlant& plant, 
         .dump();
   };
   try {
-    const std::string program = own_command("diagnose", "install swingbank whole").string();
+    const std::string program = own_command("diagnose", "install all parts of Swingbank").string();
     const ProgramEnd e = run_program(program,
                                      {program, "--fleet", c.fleet, "--plant", plant.name, "--out", c.out,
                                       "--threads", std::to_string(threads)},

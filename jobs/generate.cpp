@@ -37,7 +37,7 @@ void declare(jobs::CommandLine& line, Command& c) {
   line.add("config", c.config, "the dataset's config (TOML)");
   line.add("--out", c.options.folder, "dataset folder; new, empty, or an unfinished one of the same config");
   line.add("--again", c.again,
-           "a card.json, or a dataset's folder, instead of CONFIG: makes that dataset again");
+           "a card.json, or a dataset's folder, instead of CONFIG: generates the same dataset again");
   line.add("--draws", c.overrides.draws, "number of simulated events, instead of the config's").positive();
   line.add("--seed", c.overrides.seed, "seed, instead of the config's").not_negative();
   line.add("--faults-per-point", c.overrides.faults_per_point,
@@ -50,25 +50,26 @@ void declare(jobs::CommandLine& line, Command& c) {
   line.add_flag(
       "--int16", c.overrides.int16,
       "records as 16-bit numbers: half the bytes, with an error of at most 0.00076 % of a channel's range in its row");
-  line.add("--writer-ranks", c.options.writer_ranks, "ranks that make and write a shard together (default 1)")
+  line.add("--writer-ranks", c.options.writer_ranks,
+           "number of ranks that simulate and write one shard together (default 1)")
       .positive();
   line.add("--lease-timeout", c.options.lease_timeout,
            "the run ends if a shard takes longer [s] (default 600; 0: never)")
       .not_negative();
   line.add_flag("--dedicated-master", c.options.dedicated_master,
-                "rank 0 only leads (from 32 ranks on always)");
+                "rank 0 only assigns shards and simulates none (always from 32 ranks)");
   const jobs::Option part =
       line.add("--part", c.part,
                "k/n: generate only the k-th of n parts of the shards; other runs generate the others");
   line.add("--databank", c.options.databank,
-           "databank of this config from swingbank databank (.h5), not drawn again");
-  const jobs::Option repair =
-      line.add_flag("--repair", c.options.repair, "check every shard there is and make bad ones anew");
+           "databank (.h5) that `swingbank databank` drew from this config");
+  const jobs::Option repair = line.add_flag("--repair", c.options.repair,
+                                            "check every existing shard and generate damaged ones again");
   repair.excludes(part);
   line.add_flag(
           "--trust", c.options.trust,
-          "continue without reading the shards there are (0.15 s for 268 MB on one rank): only their lengths "
-          "are checked, and of a finished dataset its manifest alone")
+          "continue without reading existing shards (0.15 s for 268 MB on one rank): only their lengths are "
+          "checked, or the manifest alone if the dataset is complete")
       .excludes(repair);
   line.add_choice("--progress", c.mode, Progress::words(), "auto, bar, lines or none");
 }
@@ -82,7 +83,7 @@ int describe_to(bool first, const std::filesystem::path& folder, const char* mor
     complete = d.complete;
     if (complete && d.rows == 0)
       throw InputError({"a dataset without rows", folder.string(),
-                        "no simulated event ended stable; the list above counts how they ended",
+                        "all simulated events were unstable or failed; the list above counts how they ended",
                         "play one of them with swingbank simulate, or give a config of milder events"});
   });
   return complete || !first ? 0 : kSubmitAgain;
@@ -129,7 +130,7 @@ void require_card_kept(const mpi::draw::Card& card, const mpi::draw::DatasetConf
   const std::string kernel = mpi::draw::kernel_variant(mpi::draw::load_study(config));
   if (mpi::draw::config_hash(config, kernel) == card.config_hash) return;
   throw InputError(
-      {"a dataset that cannot be made here to the last bit", "--again",
+      {"this machine or build cannot reproduce the dataset exactly", "--again",
        fmt::format("the card's kernel is {} and its config hash {}; here they are {} and {}", card.kernel,
                    card.config_hash, kernel, mpi::draw::config_hash(config, kernel)),
        "run it on such a processor with such a build; the card's made_by names both"});
@@ -140,7 +141,7 @@ int make(Command c) {
   mpi::draw::DatasetConfig config;
   mpi::ranks::agree(MPI_COMM_WORLD, c.config, [&] {
     if (!c.again.empty() && !c.config.empty())
-      throw InputError({"two configs", "--again", "the card holds one", "leave CONFIG out"});
+      throw InputError({"CONFIG in addition", "--again", "the card contains the config", "leave CONFIG out"});
     if ((c.config.empty() && c.again.empty()) || c.options.folder.empty())
       throw InputError(
           {"nothing to do", "command line", "CONFIG and --out are needed", "see swingbank generate --help"});

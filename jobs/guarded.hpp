@@ -44,7 +44,7 @@ int guarded(const std::string& command, F action) {
   } catch (const std::bad_alloc&) {
     fmt::print(
         stderr,
-        "no memory at swingbank {} (this machine or the limit of its process is too small for the input): use "
+        "out of memory at swingbank {} (this machine or the limit of its process is too small for the input): use "
         "shorter or fewer records, or lower rates\n",
         command);
   } catch (const std::exception& error) {

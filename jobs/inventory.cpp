@@ -71,14 +71,14 @@ void print_faults(const char* title, const std::vector<std::string>& faults) {
   }
   if (!groups.empty()) fmt::print("\n{}\n", title);
   for (const auto& [kind, group] : groups)
-    fmt::print("  {} x {}{}\n", group.first, group.first > 1 ? "as this: " : "", group.second);
+    fmt::print("  {} x {}{}\n", group.first, group.first > 1 ? "for example: " : "", group.second);
 }
 
 void print_text(const Inventory& inventory, bool units) {
   const Totals t = totals_of(inventory);
   const auto share = [&](int n) { return t.units == 0 ? 0.0 : 100.0 * n / t.units; };
   fmt::print(
-      "{} units: {} wholly covered ({:.1f} %), {} in part, {} without a dynamic model; {} out of service\n",
+      "{} units: {} fully covered ({:.1f} %), {} partly, {} without a dynamic model; {} out of service\n",
       t.units, t.covered, share(t.covered), t.partly, t.without_machine, t.off);
   if (t.classical > 0)
     fmt::print(
@@ -89,7 +89,7 @@ void print_text(const Inventory& inventory, bool units) {
                           t.idle));
   print_models(inventory);
   for (const ModelCount& m : inventory.models)
-    if (m.faulty > 0) fmt::print("\n{} x {}, as this: {}\n", m.faulty, m.name, m.fault);
+    if (m.faulty > 0) fmt::print("\n{} x {}, for example: {}\n", m.faulty, m.name, m.fault);
   if (inventory.without_generator > 0)
     fmt::print("\n{} records of generators that the .raw does not have, the first on line {}\n",
                inventory.without_generator, inventory.first_without_generator);
@@ -146,13 +146,13 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--dyr,--dyd", a.dyr, "dynamic models, format by file extension: PSS/E .dyr, PSLF .dyd")
       .required();
   line.add("--frequency-hz", a.frequency_hz,
-           "nominal frequency [Hz]: taken as by the other commands, but counting needs none");
+           "nominal frequency [Hz]: accepted for consistency with other commands; not used");
   line.add("--raw-version", a.raw_version, "version of a .raw file without a version number, 23 to 35");
   line.add_flag("--units", a.units, "list every unit with its models");
   line.add_flag("--json", a.json, "print everything as JSON");
   line.footer(
-      "A unit is wholly covered if it has a machine model and every record of it can be read; 'swingbank plant' "
-      "takes one out of the case.");
+      "A unit is fully covered if it has a machine model and every record of it can be read; 'swingbank plant' "
+      "writes one of them as a plant file.");
   line.example("swingbank inventory --raw grid.raw --dyr grid.dyr");
   if (!line.parse(argc, argv)) return line.end();
   const Inventory inventory = sim::grid::take_inventory(a.raw, a.dyr, {a.frequency_hz, a.raw_version});

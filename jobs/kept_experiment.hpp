@@ -28,8 +28,8 @@ inline std::filesystem::path keep_experiment(const std::filesystem::path& file,
     const auto kept = mpi::draw::unpack(mpi::draw::card_of(config, {}, {}), folder / key);
     if (!mpi::draw::replace_name(text, written, (std::filesystem::path(key) / kept.filename()).string()))
       throw InputError({"a name that cannot be replaced", file.string(),
-                        "'" + written + "' is written with escapes",
-                        "write the name between quotes as it is"});
+                        "the file writes the name '" + written + "' with escape sequences",
+                        "write the name in quotes, without escape sequences"});
   }
   make_folder(folder);
   write_text(folder / file.filename(), text);

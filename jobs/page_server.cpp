@@ -127,7 +127,7 @@ struct PageServer::State {
     const std::lock_guard guard(lock);
     const auto found = pages.find(r.get_param_value("s"));
     if (found == pages.end())
-      throw InputError({"the session", "the live page", "it was closed, or the server was started again",
+      throw InputError({"unknown session", "the live page", "it was closed, or the server was started again",
                         "reload the page"});
     found->second->used = std::chrono::steady_clock::now();
     return found->second;
@@ -347,7 +347,8 @@ void PageServer::State::routes() {
     const int event = whole(r, "e");
     const auto step = page(r)->session.step(whole(r, "k"));
     if (event < 0 || event >= static_cast<int>(step->played->events.size()))
-      throw InputError({"the event", "the live page", "there is no such event", "reload the page"});
+      throw InputError(
+          {"unknown event", "the live page", "the model has no event of this number", "reload the page"});
     reply(out, live::curves(*step, static_cast<std::size_t>(event)));
   });
   http.Get(api("effects"), [this](const Request& r, Response& out) {

@@ -32,7 +32,7 @@ int run(Arguments& a) {
     a.unit.dyd = true;
   }
   if (a.unit.dyr.empty())
-    problems.add("no dynamic models", "--dyr", "a plant is made of the records of its unit",
+    problems.add("no dynamic models", "--dyr", "a plant file needs the dynamic models of the unit",
                  "give the case's .dyr, or --dyd with its .dyd");
   problems.raise();
   a.unit.dyd = a.unit.dyd || sim::formats::is_dyd(a.unit.dyr);
@@ -74,7 +74,8 @@ int run(CommandLine& line, int argc, char** argv) {
            "network, format by file extension: PSS/E .raw or .rawx, PSLF .epc, MATPOWER .m")
       .required();
   const auto dyr = line.add("--dyr", a.unit.dyr, "dynamic models, PSS/E .dyr");
-  line.add("--dyd", a.dyd, "or PSLF .dyd; configs/networks/README.md lists its models").excludes(dyr);
+  line.add("--dyd", a.dyd, "dynamic models, PSLF .dyd; configs/networks/README.md lists its models")
+      .excludes(dyr);
   line.add("--bus", a.unit.bus, "number of the unit's bus").required().positive();
   line.add("--id", a.unit.id, "id of the unit, if the bus has several units");
   line.group("Output");
@@ -85,12 +86,12 @@ int run(CommandLine& line, int argc, char** argv) {
       .one_value_a_mention()
       .comma_separated();
   line.add("--replace", a.replace,
-           "OLD=NEW: a model of the unit read as another: with its values if both have the same "
-           "number of parameters, else with the other's default values; may be repeated")
+           "OLD=NEW: replace model OLD of the unit by NEW; the values are kept if both have the same "
+           "number of parameters, else NEW has its default values; may be repeated")
       .one_value_a_mention();
   line.add_choice("--complete-records", a.complete_records, sim::grid::kLackingWords,
                   "records that are shorter than their model are completed with these values, longer ones "
-                  "are truncated; each value is named");
+                  "are truncated; each change is listed");
   line.group("Input");
   line.add("--measured-at", a.measured_at,
            "bus beyond the unit's transformer, where the records were taken: the transformer becomes part "

@@ -134,13 +134,13 @@ ordered_json to_json(const train::run::SavedNetwork& network, const plant::Plant
 
 std::string table(const train::run::NetworkInfo& n, const std::vector<Estimated>& all) {
   std::string text = fmt::format("{:<16}{:>12}{:>12}{:>12}  {:<6}{}\n", "parameter", "estimate", "RMSE",
-                                 "scatter", "unit", "learnt within");
+                                 "scatter", "unit", "training range");
   for (std::size_t i = 0; i < n.parameters.size(); ++i) {
     const auto& p = n.parameters[i];
     const auto [mean, scatter] = over_records(all, i);
     text += fmt::format("{:<16}{:>12.4g}{:>12.3g}{:>12.3g}  {:<6}{}\n", p.name, mean, p.rms_error, scatter,
                         p.unit,
-                        p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "fixed, not learnt");
+                        p.high > p.low ? fmt::format("{:g} to {:g}", p.low, p.high) : "fixed in training");
   }
   return text +
          "RMSE: root mean square error on generators (or values) outside the training data; "
@@ -170,8 +170,8 @@ int run(const Options& o) {
   std::vector<Estimated> all = read_all(o.records, model, preparing);
   if (!o.out.empty()) require_inputs_kept({{o.out, "--out"}});
   if (o.event && all.size() > 1)
-    throw InputError(
-        {"one event time for several records", "--event", "each has its own", "give one record at a time"});
+    throw InputError({"one event time for several records", "--event", "every record has its own event time",
+                      "give one record at a time"});
   const auto& machine = model.plant.machine;
   const double reactance = network.info().needs_reactance
                                ? machine.p[static_cast<std::size_t>(machine.effect->parameter_index("Xdp"))]
@@ -199,7 +199,7 @@ int run(CommandLine& line, int argc, char** argv) {
   o.reading.add_from(line);
   o.reading.add_until(line);
   o.reading.add_point(line);
-  line.add("--event", o.event, "when the event begins [s] (default: found)");
+  line.add("--event", o.event, "start of the event [s] (default: detected)");
   line.add("--noise", o.noise,
            "level of the records' noise, as measured before the event (0.001: 0.1 %), for a network that was "
            "trained at many levels")

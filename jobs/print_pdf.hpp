@@ -30,13 +30,13 @@ inline std::filesystem::path browser() {
 /// Adds a problem if a PDF cannot be written. Call it before the work.
 inline void browser_for(const std::string& pdf, Problems& problems) {
   if (browser().empty())
-    problems.add("no Chromium", "--pdf", "a page is printed by it, and PATH has none",
+    problems.add("no Chromium", "--pdf", "Chromium prints the page, and PATH does not contain it",
                  "install the package chromium, or leave --pdf out and print report.html from any browser");
   const auto folder = std::filesystem::absolute(pdf).parent_path();
   if (!std::filesystem::is_directory(folder))
-    problems.add("no folder for " + pdf, "--pdf", "there is no " + folder.string(), "make it");
+    problems.add("no folder for " + pdf, "--pdf", "there is no " + folder.string(), "create this folder");
   else if (std::filesystem::is_directory(pdf))
-    problems.add("a folder", "--pdf", pdf + " is one", "give a file's name");
+    problems.add("a folder instead of a file", "--pdf", pdf + " is a folder", "give a file's name");
 }
 
 /// Returns the URL "file:///..." with all characters except letters, digits and "/-._~" as %XX.

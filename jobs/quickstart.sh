@@ -11,7 +11,7 @@ while (($#)); do
   case $1 in
     --out) out=$(realpath -m "${2:?--out needs a folder}"); shift 2 ;;
     -h | --help) sed -n '2,5p' "$0"; exit 0 ;;
-    *) echo "unknown option at '$1' (jobs/quickstart.sh does not have it): run it with --help" >&2; exit 1 ;;
+    *) echo "unknown option at '$1' (jobs/quickstart.sh has no such option): run it with --help" >&2; exit 1 ;;
   esac
 done
 

@@ -74,9 +74,10 @@ inline NetworkInput network_input(const validate::record::Record& record,
     problems.add("no event", record.name, "no signal exceeds the noise",
                  "give --event with its time, or another record");
   else if (constexpr std::size_t few = 5; quiet < few || quiet >= record.t.size())
-    problems.add(fmt::format("an event at {:g} s", in.event_s), record.name,
-                 fmt::format("there must be {} samples or more before it, and some after it", few),
-                 "give a record that begins earlier");
+    problems.add(
+        fmt::format("an event at {:g} s", in.event_s), record.name,
+        fmt::format("the record must contain at least {} samples before the event, and some after it", few),
+        "give a record that begins earlier");
   if (!network.fault_start)
     problems.add("network without the time of its faults", network.run,
                  "its dataset has no time of the faults", "train it on a dataset that `generate` made");
@@ -84,10 +85,10 @@ inline NetworkInput network_input(const validate::record::Record& record,
   const double shift = in.event_s - *network.fault_start;
   const double last = shift + static_cast<double>(network.samples - 1) / network.rate;
   if (last > record.t.back() + 0.5 * record.step())
-    problems.add(
-        fmt::format("a record until {:g} s", record.t.back()), record.name,
-        fmt::format("the network reads until {:g} s, {:g} s after the event", last, last - in.event_s),
-        "give a longer record");
+    problems.add(fmt::format("a record until {:g} s", record.t.back()), record.name,
+                 fmt::format("the network needs samples until {:g} s ({:g} s after the event)", last,
+                             last - in.event_s),
+                 "give a longer record");
   in.padding_s = std::max(0.0, record.t.front() - shift);
   for (const auto& channel : network.channels) {
     const auto x = record_detail::series_of(channel, record, model, network);

@@ -31,7 +31,7 @@ inline bool make_network(const RetrainPrograms& programs, const validate::retrai
   const auto step = [&](const std::filesystem::path& program, const std::vector<std::string>& words) {
     const int code = run_own(program, words);
     if (code != 0 && code != kStopped)
-      throw InputError({fmt::format("the network {} the effect was not made", side.name),
+      throw InputError({fmt::format("cannot train the network {} the effect", side.name),
                         side.folder.string(), program.filename().string() + " printed the reason above",
                         "correct that; if settings changed since an earlier run, remove the folder"});
     return code == 0;

@@ -33,7 +33,7 @@ while (($#)); do
     --launcher) launcher=${2:?} ;;
     --build) build=${2:?} ;;
     -h | --help) sed -n '2,15p' "$0"; exit 0 ;;
-    *) echo "unknown option at '$1' (jobs/run_experiment.sh does not have it): run it with --help" >&2; exit 1 ;;
+    *) echo "unknown option at '$1' (jobs/run_experiment.sh has no such option): run it with --help" >&2; exit 1 ;;
   esac
   shift 2
 done
@@ -156,5 +156,5 @@ case $stage in
     train
     tables
     ;;
-  *) echo "unknown stage at --stage $stage (there is none of that name): run it with --help" >&2; exit 1 ;;
+  *) echo "unknown stage at --stage $stage (there is no such stage): choose one that --help lists" >&2; exit 1 ;;
 esac

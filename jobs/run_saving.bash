@@ -41,8 +41,8 @@ watch_launcher() {
   while sleep 1 && kill -0 "$1" 2>/dev/null; do
     if is_lost "$1"; then seconds=$((seconds + 1)); else seconds=0; fi
     if ((seconds >= launcher_patience)); then
-      echo "a process killed at $lost (for $seconds s it was stopped while others wait for it, or it is a launcher that" \
-        "outlived its processes): what is finished is safe, the same command goes on" >&2
+      echo "a process killed at $lost (it was stopped for $seconds s while other processes waited, or it is a" \
+        "launcher that outlived its processes): finished work is safe; run the same command again to continue" >&2
       kill -KILL "$lost" 2>/dev/null || true
       seconds=0
     fi

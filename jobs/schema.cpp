@@ -23,7 +23,7 @@ std::string experiment_schema() {
   const ProgramEnd end = run_program(program, {program}, {.output = ProgramRun::Output::taken});
   if (end.code() != 0)
     throw InputError({fmt::format("exit code {}", end.code()), program,
-                      "it was to print the schema of experiments", "install swingbank-train again"});
+                      "it did not print the schema of experiments", "install swingbank-train again"});
   return end.output;
 }
 

@@ -19,7 +19,7 @@ while (($#)); do
     --target) targets+=("${2:?--target needs a name}"); shift 2 ;;
     --packages-only) build=0; shift ;;
     -h | --help) sed -n '2,9p' "$0"; exit 0 ;;
-    *) echo "unknown option at '$1' (jobs/setup.sh does not have it): run jobs/setup.sh --help" >&2; exit 1 ;;
+    *) echo "unknown option at '$1' (jobs/setup.sh has no such option): run jobs/setup.sh --help" >&2; exit 1 ;;
   esac
 done
 

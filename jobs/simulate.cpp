@@ -351,7 +351,7 @@ int simulate(const Options& o) {
          fmt::format("{}: {}", outcome_name(run.outcome),
                      run.outcome == Outcome::not_finite
                          ? "a value became infinite or undefined"
-                         : "the integrator found no step that keeps its tolerance"),
+                         : "the integrator could not meet its tolerance at any step size"),
          "nothing was written; check the impedances and time constants that act at this time, or "
          "give another --tolerance"});
   for (const std::filesystem::path file : o.out) {

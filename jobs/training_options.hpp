@@ -86,7 +86,7 @@ struct TrainingOptions {
       problems.add("no dataset", "DATASET", "a run needs one",
                    "give the folder that `swingbank generate` wrote, or --simulate with a dataset's config");
     if (!simulate.empty() && !(dataset.empty() && training_rows.empty()))
-      problems.add("two datasets", "--simulate", "rows come from a disk or from memory",
+      problems.add("two datasets", "--simulate", "DATASET and --simulate exclude each other",
                    "give one of the two");
     if (simulate.empty() && (simulated.draws || simulated.seed))
       problems.add("no config to simulate", "--draws, --draw-seed", "they change values of a config",
@@ -121,7 +121,7 @@ struct TrainingOptions {
   /// missing although it does. Otherwise runs on different rows would have the same name.
   void check_training_rows(bool wanted, const std::string& of) const {
     if (wanted == !training_rows.empty()) return;
-    throw InputError({wanted ? "no training-only rows" : "training-only rows", "--training-rows",
+    throw InputError({wanted ? "no additional training rows" : "additional training rows", "--training-rows",
                       fmt::format("network {} of preset {} in {} {} them", of, preset, experiment,
                                   wanted ? "trains on" : "does not train on"),
                       wanted ? "give the folder of the experiment's training_dataset" : "leave it out"});

@@ -43,11 +43,13 @@ int run(CommandLine& line, int argc, char** argv) {
   line.describe(
       "Reads every shard of a dataset and compares it with journal and header: hash, shapes, rows, outcomes.\n"
       "  swingbank verify data/gencls\n"
-      "Exit codes: 0 whole and complete, 1 a shard at fault, 2 whole so far and unfinished.");
+      "Exit codes: 0 complete and correct, 1 a shard is damaged, 2 all existing shards are correct but\n"
+      "some are missing.");
   std::string folder;
   int processes = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())), mode = 0;
   line.add("folder", folder, "the dataset's folder").required();
-  line.add("--processes", processes, "that read at once (default: one per core)").positive();
+  line.add("--processes", processes, "number of processes that read shards (default: one per core)")
+      .positive();
   line.add_choice("--progress", mode, Progress::words(), "auto, bar, lines or none");
   if (!line.parse(argc, argv)) return line.end();
   return run(folder, processes, static_cast<Progress::Mode>(mode));

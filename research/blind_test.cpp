@@ -80,7 +80,7 @@ int share_cases(const mpi::items::Ranks& ranks, const Options& o, std::size_t co
 std::string make_one(const Options& o, const blind::cases::BlindConfig& config,
                      const blind::cases::BlindSpec& spec, const std::string& name) {
   const fs::path folder = fs::path(o.out) / "cases" / name;
-  if (fs::exists(folder)) return packed(Fate::was_there, name + ", was there");
+  if (fs::exists(folder)) return packed(Fate::was_there, name + " (existed already)");
   const auto start = std::chrono::steady_clock::now();
   try {
     const blind::cases::BlindCase one = blind::cases::make_blind_case(config, spec);
@@ -230,7 +230,8 @@ int run(jobs::CommandLine& line, int argc, char** argv) {
            "program to run as PROGRAM CASE_FOLDER VERDICT_FILE on every case without a verdict");
   line.add_flag("--score", o.score, "compare the verdicts with the truth: score.md, score.json");
   line.add("--targets", o.targets, "target rates, for example configs/blind/targets.toml");
-  line.add("--case-timeout", o.limit, "a case that takes longer [s] ends the run (default 7200; 0: never)")
+  line.add("--case-timeout", o.limit,
+           "time limit per case [s]; exceeding it ends the run (default 7200; 0: none)")
       .not_negative();
   line.add("--threads", o.threads,
            "of one diagnosis; 0: one per core (default: that, or 1 where several ranks share the machine)")

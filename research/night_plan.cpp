@@ -78,7 +78,7 @@ double print(const Plan& plan, const std::string& preset, const Scale& to) {
 
 void run(const Options& o) {
   if (!o.out.empty() && (o.hours <= 0 || o.name.empty()))
-    throw InputError({"no size of the preset", "--out", "the written preset needs a duration and a name",
+    throw InputError({"missing --hours or --name", "--out", "the written preset needs a duration and a name",
                       "give --hours and --name"});
   if (!std::ranges::all_of(o.name, [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; }))
     throw InputError({fmt::format("invalid preset name '{}'", o.name), "--name",
@@ -91,8 +91,8 @@ void run(const Options& o) {
   if (o.hours > 0) to.work = plan.work_for(o.preset, o.hours * 3600.0 * o.cores);
   if (!o.name.empty()) to.name = o.name;
   const double sum = print(plan, o.preset, to);
-  fmt::print("\nPreset {} with {:.3g} times its work: {:.1f} core-hours, {} on {} cores.\n", o.preset,
-             to.work, sum / 3600.0, shown(sum / o.cores), o.cores);
+  fmt::print("\nPreset {} scaled by {:.3g}: {:.1f} core-hours, {} on {} cores.\n", o.preset, to.work,
+             sum / 3600.0, shown(sum / o.cores), o.cores);
   if (o.hours > 0 && sum > 1.1 * o.hours * 3600.0 * o.cores)
     fmt::print("That exceeds the requested {}: the preset is at its smallest size.\n",
                shown(o.hours * 3600.0));

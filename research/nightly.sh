@@ -44,7 +44,7 @@ while (($#)); do
     --fuzz) fuzz=${2:?--fuzz needs seconds}; shift 2 ;;
     --blind) blind=${2:?--blind needs a number of cases}; shift 2 ;;
     -h | --help) sed -n '2,23p' "$0"; exit 0 ;;
-    -*) echo "unknown option at '$1' (research/nightly.sh does not have it): run it with --help" >&2; exit 1 ;;
+    -*) echo "unknown option at '$1' (research/nightly.sh has no such option): run it with --help" >&2; exit 1 ;;
     *) experiments+=("$(realpath -m "$1")"); shift ;;
   esac
 done

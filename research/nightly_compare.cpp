@@ -158,7 +158,7 @@ std::string percent(double log_ratio) { return fmt::format("{:+.1f} %", 100.0 * 
 std::string verdict(const Change& c) {
   if (c.runs == 0) return "new";
   const char* word = c.other_maker ? "; software or kernels differ from the previous run" : "";
-  if (!c.judged()) return fmt::format("no verdict before {} runs{}", kRunsNeeded, word);
+  if (!c.judged()) return fmt::format("fewer than {} runs, no verdict{}", kRunsNeeded, word);
   if (!c.moved()) return fmt::format("within noise{}", word);
   return fmt::format("**{}**{}", c.latest > c.before ? "worse" : "better", word);
 }
@@ -173,11 +173,11 @@ void print_report(const std::string& date, std::vector<Change> changes) {
       "results in all)\n\n",
       date, moved, judged, changes.size());
   fmt::print(
-      "Score: MSE / predict-the-mean (1: learnt nothing). Noise: one standard deviation, from the runs "
-      "before.\n\n");
+      "Score: MSE / predict-the-mean (1: no better than the mean). Noise: one standard deviation, from "
+      "earlier runs.\n\n");
   fmt::print(
-      "| table | network | noise level | generator | preset | this run [-] | median before [-] | change | noise | "
-      "runs | verdict |\n");
+      "| table | network | noise level | generator | preset | this run [-] | median of earlier runs [-] | change | "
+      "noise | runs | verdict |\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const auto& c : changes) {
     const bool known = c.runs > 0;

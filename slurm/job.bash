@@ -16,8 +16,8 @@ finish_or_requeue() {
     exit "$status"
   fi
   if ((restarts >= max_restarts)); then
-    echo "job given up at $SLURM_JOB_NAME ($restarts restarts, limit $max_restarts): raise max_restarts in the site file" \
-      "or the time per attempt, then submit again; nothing done so far is lost" >&2
+    echo "no further restart of job $SLURM_JOB_NAME ($restarts restarts, limit $max_restarts): raise max_restarts in the" \
+      "site file or the time per attempt, then submit again; nothing done so far is lost" >&2
     exit 1
   fi
   echo "saved before the time limit; requeued (restart $((restarts + 1)) of at most $max_restarts)"
@@ -37,7 +37,7 @@ finish_or_requeue() {
 retry_elsewhere() {
   local retries=${SWINGBANK_RETRY:-0} nodes
   if ((retries >= max_retries)); then
-    echo "job given up at $SLURM_JOB_NAME (exit code $1 on $SLURM_JOB_NODELIST after $retries retries, limit" \
+    echo "no further retry of job $SLURM_JOB_NAME (exit code $1 on $SLURM_JOB_NODELIST after $retries retries, limit" \
       "$max_retries): see the lines above; if they name no reason, raise max_retries in the site file" >&2
     exit "$1"
   fi

@@ -20,7 +20,7 @@ while (($#)); do
     --site) SWINGBANK_SITE=$(realpath -m "${2:?--site needs a file}"); shift 2 ;;
     --dry-run | --status | --cancel) action=${1#--}; shift ;;
     -h | --help) sed -n '2,11p' "$0"; exit 0 ;;
-    -*) echo "unknown option at '$1' (slurm/submit.sh does not have it): run slurm/submit.sh --help" >&2; exit 1 ;;
+    -*) echo "unknown option at '$1' (slurm/submit.sh has no such option): run slurm/submit.sh --help" >&2; exit 1 ;;
     *) positional+=("$1"); shift ;;
   esac
 done
@@ -106,7 +106,7 @@ case $action in
   cancel)
     mapfile -t running < <(unfinished_jobs)
     ((${#running[@]})) && scancel "${running[@]}"
-    echo "cancelled: ${running[*]:-none waits or runs}"
+    echo "cancelled: ${running[*]:-no job was pending or running}"
     exit 0
     ;;
 esac

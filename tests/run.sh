@@ -24,7 +24,7 @@ while (($#)); do
     --sanitize) sanitize=1 ;;
     --ci) ci=1 ;;
     -h | --help) sed -n '2,13p' "$0"; exit 0 ;;
-    *) echo "unknown option at '$1' (tests/run.sh does not have it): run tests/run.sh --help" >&2; exit 1 ;;
+    *) echo "unknown option at '$1' (tests/run.sh has no such option): run tests/run.sh --help" >&2; exit 1 ;;
   esac
   shift
 done

@@ -104,7 +104,7 @@ void bind_calibration(py::module_& module) {
       .def(
           "to_dict",
           [](const Calibration& c) { return from_json(json_text(calibrate::calibration_json(c))); },
-          "Returns what the fit adds to calibrate.json.")
+          "Returns the result of the fit, as in calibrate.json.")
       .def("_repr_html_", [](const Calibration& c) { return html_of(c); })
       .def("__str__", [](const Calibration& c) { return calibrate::terminal_report(c); })
       .def("__repr__", [](const Calibration& c) { return "<swingbank.Calibration: " + c.sentence + ">"; });
@@ -122,10 +122,10 @@ void bind_selection(py::module_& module) {
       .def_property_readonly("parameters", &selected,
                              "Selected parameters, a list of FittedParameter, the strongest evidence first.")
       .def_property_readonly("evidence", &evidence_of,
-                             "Rise of chi-square with one of them at its given value, by name [-].")
+                             "Increase of chi-square if a parameter keeps its given value, by name [-].")
       .def_property_readonly(
           "tied", &tied_of,
-          "Names of parameters that explain the records equally well in its place, by name.")
+          "Names of parameters that explain the records equally well instead of a selected one, by name.")
       .def_property_readonly(
           "before", [](const WrongParameters& w) { return w.found.before; },
           "Reduced chi-square of the given plant [-].")
@@ -134,7 +134,7 @@ void bind_selection(py::module_& module) {
           "Reduced chi-square with these parameters changed [-].")
       .def(
           "to_dict", [](const WrongParameters& w) { return from_json(json_text(calibrate::wrong_json(w))); },
-          "Returns what the selection adds to calibrate.json.")
+          "Returns the result of the selection, as in calibrate.json.")
       .def("_repr_html_", [](const WrongParameters& w) { return html_of(w); })
       .def("__str__", [](const WrongParameters& w) { return calibrate::wrong_text(w); })
       .def("__repr__",
@@ -159,7 +159,7 @@ void bind_addition(py::module_& module) {
       .def_readonly("seconds", &Addition::seconds, "Processing time [s].")
       .def(
           "to_dict", [](const Addition& a) { return from_json(json_text(add::addition_json(a))); },
-          "Returns what the addition adds to add.json.")
+          "Returns the result of the addition, as in add.json.")
       .def("_repr_html_", [](const Addition& a) { return html_of(a); })
       .def("__str__", [](const Addition& a) { return add::terminal_report(a); })
       .def("__repr__", [](const Addition& a) { return "<swingbank.Addition: " + a.sentence + ">"; });

@@ -14,7 +14,7 @@ using compare::ChannelComparison, compare::EventComparison, compare::WindowError
 
 compare::CompareOptions options_of(const PlayOptions& asked) {
   if (asked.input != "voltage" && asked.input != "pq")
-    throw InputError({"input '" + asked.input + "'", "input", "it is not known",
+    throw InputError({"input '" + asked.input + "'", "input", "there is no such input",
                       "choose \"voltage\" (P and Q are compared) or \"pq\" (the reverse)"});
   compare::CompareOptions options;
   options.input = asked.input == "pq" ? compare::PlaybackInput::power : compare::PlaybackInput::voltage;

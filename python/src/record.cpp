@@ -158,7 +158,7 @@ std::vector<record::Record> samples_of(const std::vector<Record>& records, bool 
     all.push_back(r.record);
     if (!names.insert(r.record.name).second)
       throw InputError({"two records named " + r.record.name, "records", "results are listed by name",
-                        "give each record once, with a name of its own"});
+                        "give every record a unique name"});
   }
   if (all.empty())
     throw InputError({"no records", "records", "nothing can be compared", "give at least one record"});
@@ -173,8 +173,10 @@ void bind_point(py::module_& module) {
       .def(py::init(&point_of), py::arg("file"), py::arg("plant"),
            "Reads a point file (.toml) for the tested unit `plant`, as `--point` of the commands.\n\n"
            "Raises InputError with every fault of the file.")
-      .def_readonly("plant", &Point::plant,
-                    "Plant of the tested unit; a control of it that measures at another bus measures here.")
+      .def_readonly(
+          "plant", &Point::plant,
+          "Plant of the tested unit; a control of this plant that measures at a remote bus measures at this "
+          "point.")
       .def_property_readonly(
           "others", [](const Point& p) { return names_of(p.point.others); }, "Names of the other units.")
       .def("records", &records_at, py::arg("files"), py::kw_only(), py::arg("columns") = ColumnNames{},

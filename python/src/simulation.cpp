@@ -40,7 +40,8 @@ struct RunOptions {
 sim::Conventions conventions_of(const std::string& name) {
   if (name == "psse") return sim::Conventions::psse();
   if (name == "andes") return sim::Conventions::andes();
-  throw InputError({"convention '" + name + "'", "convention", "it is not known", "choose psse or andes"});
+  throw InputError(
+      {"convention '" + name + "'", "convention", "there is no such convention", "choose psse or andes"});
 }
 
 std::shared_ptr<Grid> load(const Path& raw, const Path& dyr, const std::string& convention,

@@ -73,13 +73,13 @@ class Dataset:
             header = json.loads(file.read_text())
         except OSError as error:
             raise InputError([("no dataset", str(file), error.strerror or str(error),
-                               "name a folder of swingbank generate")]) from None
+                               "give a folder that `swingbank generate` wrote")]) from None
         except ValueError:
-            raise InputError([("no dataset", str(file), "the file is no JSON",
+            raise InputError([("no dataset", str(file), "the file is not JSON",
                                "make the dataset again with swingbank generate")]) from None
         if not str(header.get("format", "")).startswith("swingbank-dataset-"):
             raise InputError([("no dataset", str(file), f"its format is {header.get('format')!r}",
-                               "name a folder of swingbank generate")])
+                               "give a folder that `swingbank generate` wrote")])
         return dict(header)
 
     def _open(self) -> Any:
@@ -88,7 +88,7 @@ class Dataset:
 
             file = self.path / "dataset.h5"
             if not file.exists():
-                raise InputError([("unfinished dataset", str(file), "the file over all shards is missing",
+                raise InputError([("incomplete dataset", str(file), "its virtual file of all shards is missing",
                                    "run the same swingbank generate again to finish it")])
             self._file = h5py.File(file, "r")
         return self._file

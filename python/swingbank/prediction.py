@@ -86,5 +86,5 @@ def predict(network: str | os.PathLike[str], plant: _native.Plant,
         if done.returncode != 0:
             raise InputError(_problems(done.stderr) or
                              [("no estimate", "swingbank predict", f"it ended with code {done.returncode}",
-                               "run the command by itself")])
+                               "run the command in a terminal to see its messages")])
         return Prediction(json.loads(out.read_text()))

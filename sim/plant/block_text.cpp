@@ -77,7 +77,7 @@ Attachment read_attachment(const std::string& text, const library::EffectLibrary
     std::vector<std::string> names;
     for (const Effect* e : library.all()) names.emplace_back(e->name);
     problems.add(
-        "no effect '" + name + "'", where, "the library has no effect of that name",
+        "unknown effect '" + name + "'", where, "the library has no effect of that name",
         suggestion(name, names, "use one of " + library.names() + ", or give its file with --user-model"));
     return {};
   }

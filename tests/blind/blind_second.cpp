@@ -192,7 +192,7 @@ blind::cases::BlindCase make_stable(const blind::cases::BlindConfig& config,
     } catch (const Unstable&) {  // drawn again
     }
   }
-  throw InputError({"no stable case in 60 draws", fmt::format("case {}", spec.index), "a speed left 2 %",
+  throw InputError({"no stable case in 60 attempts", fmt::format("case {}", spec.index), "a speed left 2 %",
                     "choose another seed"});
 }
 

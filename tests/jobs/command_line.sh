@@ -36,10 +36,10 @@ status=0
 "$swingbank" add SEXS --model a.toml --records r.csv --thread 1 --step-treshold=0.1 --xyzzy 3 4 --law l.toml 2>"$work/words" >&2 || status=$?
 ((status == 1)) || fail "exit code $status, expected 1"
 cat >"$work/expected" <<'TEXT'
-unknown option at '--thread' (swingbank add has none of that name): did you mean --threads?
-unknown option at '--step-treshold' (swingbank add has none of that name): did you mean --step-threshold?
-unknown option at '--xyzzy' (swingbank add has none of that name): see swingbank add --help
-unknown option at '--law' (swingbank add has none of that name): did you mean --user-model?
+unknown option at '--thread' (swingbank add has no such option): did you mean --threads?
+unknown option at '--step-treshold' (swingbank add has no such option): did you mean --step-threshold?
+unknown option at '--xyzzy' (swingbank add has no such option): see swingbank add --help
+unknown option at '--law' (swingbank add has no such option): did you mean --user-model?
 TEXT
 diff "$work/expected" "$work/words" || fail "unknown options are reported otherwise"
 "$swingbank" plant --raw a.raw extra 2>"$work/words" >&2 && fail "an unexpected argument is accepted"

@@ -61,12 +61,12 @@ assert "configs/user_models/torque_voltage_dip.toml" in law  # the source of the
 assert "DIPTORQUE" in (work / "user_models.txt").read_text() and "DIPTORQUE" not in listed
 PYTHON
 
-refuses "a name mistyped" "no effect 'GENRUO' at NAME \(the nearest names are GENROU" "$swingbank" effects GENRUO
+refuses "a name mistyped" "unknown effect 'GENRUO' at NAME \(the nearest names are GENROU" "$swingbank" effects GENRUO
 "$swingbank" effects GENRUO SEXX 2>"$work/both.txt" && fail "unknown names were accepted"
 (($(wc -l <"$work/both.txt") == 2)) || fail "not every unknown name was told: $(cat "$work/both.txt")"
 "$swingbank" effects REGCA1 | holds -q '^slot: converter' || fail "REGCA1 is no converter"
-refuses "a name cut short" "no effect 'regcb' at NAME \(the nearest names are REGC" "$swingbank" effects regcb
-refuses "a wind turbine" "no effect 'WT3G1' at NAME \(this model of inverters, wind or storage is not supported yet\)" "$swingbank" effects WT3G1
+refuses "a name cut short" "unknown effect 'regcb' at NAME \(the nearest names are REGC" "$swingbank" effects regcb
+refuses "a wind turbine" "unknown effect 'WT3G1' at NAME \(this model of inverters, wind or storage is not supported yet\)" "$swingbank" effects WT3G1
 "$swingbank" compare --help | grep -F "{false}" && fail "a flag shows how it is stored"
 
 printf "%s\n" "1 'SEXS' 1 0.1 10 100 0.1 0 5 /" "1 'EXDC1' 1 0 40 0.1 0 0 1 -1 0.1 0.5 0.05 0.7 0 2.8 0.08 3.7 0.33 /" \

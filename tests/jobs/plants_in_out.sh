@@ -76,11 +76,11 @@ for bus in 31 33 34; do echo "$bus 'STRANGE' 1 1 2 3 /"; done >>"$work/more.dyr"
 refuses "grouped" "unknown model 'STRANGE' of '1' at bus 30 and 3 more" "$swingbank" simulate --raw "$raw" --dyr "$work/more.dyr" --out "$work/x.csv"
 (($(grep -c STRANGE "$work/stderr") == 1)) || fail "not grouped: $(cat "$work/stderr")"
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" >"$work/inventory"
-grep -q '^10 units: 5 wholly covered (50.0 %), 5 in part' "$work/inventory" || fail "inventory says: $(head -1 "$work/inventory")"
+grep -q '^10 units: 5 fully covered (50.0 %), 5 partly' "$work/inventory" || fail "inventory says: $(head -1 "$work/inventory")"
 grep -qE "^STRANGE +4 +4 +[0-9]+  no$" "$work/inventory" || fail "inventory: $(cat "$work/inventory")"
 # A header without a frequency: a count of rotors has none either.
 sed '1s/, 60$/,/' "$raw" >"$work/silent.raw"
-"$swingbank" inventory --raw "$work/silent.raw" --dyr "$work/more.dyr" | holds -q '^10 units: 5 wholly covered' || fail "inventory without a frequency"
+"$swingbank" inventory --raw "$work/silent.raw" --dyr "$work/more.dyr" | holds -q '^10 units: 5 fully covered' || fail "inventory without a frequency"
 refuses "no frequency" 'give it with --frequency-hz' "$swingbank" plant --raw "$work/silent.raw" --dyr "$work/more.dyr" --bus 32
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --units | holds -qE '^ +32 1 .*not covered: ESAC9Z' || fail "inventory --units"
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" --json | python3 -c "
@@ -115,4 +115,4 @@ grep -q "short.dyr:$(wc -l <"$work/short.dyr"): EMIN = -500 pu (SEXS's is usuall
   "$swingbank" effects --toml GENROU IEEET1
 } >"$work/pasted.toml"
 "$swingbank" export --model "$work/pasted.toml" --bus 2 | holds -q "^2 'IEEET1' '1' " || fail "the pasted blocks make no plant"
-refuses "a block of nothing" "a block is of one effect" "$swingbank" effects --toml
+refuses "a block of nothing" "--toml prints the block of one effect" "$swingbank" effects --toml

@@ -16,7 +16,7 @@ cmp "$work/psse.csv" "$work/pslf.csv" || fail "the run is another"
 "$swingbank" simulate --epc "$epc" --dyd "$dyd" --frequency-hz 60 --t-end 2 --out "$work/still.csv" >"$work/said" 2>&1
 grep -q 'maximum change of rotor-angle differences 0.000 deg' "$work/said" || fail "it does not hold still: $(cat "$work/said")"
 
-"$swingbank" inventory --epc "$epc" --dyd "$dyd" --frequency-hz 60 | holds -q '^10 units: 10 wholly covered' ||
+"$swingbank" inventory --epc "$epc" --dyd "$dyd" --frequency-hz 60 | holds -q '^10 units: 10 fully covered' ||
   fail "inventory"
 same=(sed '/^#/d; /^origin/d; /^name/d')
 "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 32 2>/dev/null | "${same[@]}" >"$work/psse.toml"

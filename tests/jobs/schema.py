@@ -97,7 +97,7 @@ MUTATIONS = {
     "dataset": [
         ("seed = 1", "sed = 1", "sed"),
         ("seed = 1", "seed = 1.5", "seed"),
-        ("seed = 1", "seed = 1\nshard_megabytes = 1.0", "two sizes of a shard"),
+        ("seed = 1", "seed = 1\nshard_megabytes = 1.0", "shard size given twice"),
         ("draws = 720000", "draws = 0", "draws"),
         ('"one"', '"two"', "vary.who"),
         ('"GENROU"', '"SEXS"', "vary.model"),

@@ -35,7 +35,7 @@ printf 'name = "L"\ntitle = "t"\nsource = "s"\noutput = "Vs"\naction = "add"\nva
 refuses "a fault in a law" "unknown name nothing in value at $work/bad.toml:6:14" \
   simulate --user-model "$work/bad.toml" --out "$work/x.csv"
 refuses "no such plant" "no plant 77" simulate --attach 77:SEXS --out "$work/x.csv"
-refuses "no such effect" "no effect 'SEXSLAW'" simulate --attach 2:SEXSLAW --out "$work/x.csv"
+refuses "no such effect" "unknown effect 'SEXSLAW'" simulate --attach 2:SEXSLAW --out "$work/x.csv"
 printf 'name = "L"\ntitle = "t"\nsource = "s"\noutput = "Tm"\naction = "add"\nvalue = "V"\n' >"$work/moves.toml"
 refuses "a law that does not rest" "cannot hold the operating point.*it adds 1.045 pu to Tm" \
   simulate --user-model "$work/moves.toml" --attach 2:L --out "$work/x.csv"

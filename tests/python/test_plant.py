@@ -87,7 +87,7 @@ class Prediction(unittest.TestCase):
     def test_message_of_the_command(self):
         with self.assertRaises(swingbank.InputError) as caught:
             swingbank.predict("none.network", swingbank.Plant(PLANT), [RECORDS[0]])
-        self.assertEqual([p.what for p in caught.exception.problems], ["no network"])
+        self.assertEqual([p.what for p in caught.exception.problems], ["cannot read the network file"])
 
 
 class Effects(unittest.TestCase):

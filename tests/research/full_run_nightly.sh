@@ -23,7 +23,7 @@ touch "$work/before"
 night 2026-02-02 --keep-data "$work/tiny.toml" >"$work/log" 2>&1 || fail "second night: $(tail "$work/log")"
 [[ -z $(find "$out/2026-02-02/tiny/data/shards" "$out/2026-02-02/tiny/training-data/shards" -newer "$work/before" -name '*.h5') ]] || fail "events were made again"
 [[ $(readlink "$out/latest") == 2026-02-02 ]] || fail "latest points to $(readlink "$out/latest")"
-grep -q 'no verdict before 3 runs' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
+grep -q 'fewer than 3 runs, no verdict' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
 first=$(find "$out/2026-02-01" -name '*gru*gen30.json') second=$(find "$out/2026-02-02" -name '*gru*gen30.json')
 [[ $(basename "$first") != "$(basename "$second")" ]] || fail "both nights trained with the same seed"
 

@@ -19,7 +19,7 @@ compare() { "$swingbank" nightly-compare "$work/nights" >"$work/report"; }
 night 2026-01-01 0.200 0.100
 night 2026-01-02 0.210 0.103
 compare
-grep -q '^| V | cnn | 0 | 30 .* no verdict before 3 runs |$' "$work/report" || fail "a verdict from one night: $(cat "$work/report")"
+grep -q '^| V | cnn | 0 | 30 .* fewer than 3 runs, no verdict |$' "$work/report" || fail "a verdict from one night: $(cat "$work/report")"
 
 night 2026-01-03 0.190 0.098
 night 2026-01-04 0.204 0.400

@@ -47,7 +47,7 @@ job generate 139 SLURM_JOB_NODELIST=good,bad SWINGBANK_RETRY=1 SWINGBANK_EXCLUDE
 said "--exclude=one,bad " "$STUB/sbatch"
 job generate 137 SWINGBANK_RETRY=2
 ((status == 137)) && [[ ! -e $STUB/sbatch ]] || fail "retried beyond the limit"
-said "job given up at swingbank-generate (exit code 137 on one after 2 retries, limit 2): "
+said "no further retry of job swingbank-generate (exit code 137 on one after 2 retries, limit 2): "
 job generate 1
 ((status == 1)) && [[ ! -e $STUB/sbatch ]] || fail "bad input was tried again"
 touch "$STUB/no-other-node"
@@ -63,5 +63,5 @@ said "--array=7 $SWINGBANK_SOURCE/slurm/fold.sbatch" "$STUB/sbatch"
 said "JobId=104 Dependency=afterok:102,afterany:103:201" "$STUB/scontrol"
 job fold 2 SLURM_RESTART_COUNT=12 SWINGBANK_SEGMENT=8
 ((status == 1)) && [[ ! -e $STUB/sbatch ]] || fail "went on beyond max_restarts"
-said "job given up at swingbank-fold (20 restarts, limit 20): "
+said "no further restart of job swingbank-fold (20 restarts, limit 20): "
 echo "ok: follow-up segments"

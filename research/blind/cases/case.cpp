@@ -231,7 +231,7 @@ BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec) {
       last = error.what();
     }
   }
-  throw InputError({fmt::format("no stable case in {} draws", kAttempts),
+  throw InputError({fmt::format("no stable case in {} attempts", kAttempts),
                     fmt::format("seed {}, case {}", spec.seed, spec.index), last,
                     "check the kinds of the config"});
 }

@@ -50,7 +50,7 @@ class Dealer {
   template <class T>
   static T turn(const std::vector<T>& list, std::size_t& count, const std::string& word) {
     if (list.empty())
-      throw InputError({"no kind for '" + word + "'", "--kinds", "the config has no kind of that class",
+      throw InputError({"no kind for '" + word + "'", "--kinds", "the config defines no kind of this class",
                         "add some, or choose other kinds"});
     return list[count++ % list.size()];
   }

@@ -56,7 +56,7 @@ struct RandomWalk : Unlisted {
       {"A", "A", "pu", 0.005, 0.0, 1.0, 0.0, "largest change between knots"},
       {"step", "dt", "s", 0.4, 0.01, 60.0, sim::kNoNullValue, "time between knots"},
       {"start", "t1", "s", 2.4, 0.0, 1e5, sim::kNoNullValue, "when it begins"},
-      {"number", "n", "-", 5.0, 0.0, 1e6, sim::kNoNullValue, "which walk"}};
+      {"number", "n", "-", 5.0, 0.0, 1e6, sim::kNoNullValue, "number of the random sequence"}};
   static constexpr std::array<sim::State, 0> states{};
   static std::vector<double> switching_times(const double* p) {
     std::vector<double> all;
@@ -138,7 +138,7 @@ struct FieldLoss : Unlisted {
   enum P { part, start, coefficients };
   static constexpr sim::Parameter parameters[] = {
       {"part", "k", "-", 0.1, 0.0, 1.0, 0.0, "part of Efd that is lost"},
-      {"start", "t1", "s", 5.3, 0.0, 1e5, sim::kNoNullValue, "when"}};
+      {"start", "t1", "s", 5.3, 0.0, 1e5, sim::kNoNullValue, "time of the loss"}};
   static constexpr std::array<sim::State, 0> states{};
   static std::vector<double> switching_times(const double* p) { return {p[start]}; }
   template <class T>

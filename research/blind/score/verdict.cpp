@@ -128,7 +128,7 @@ BlindJudge program_judge(const std::string& program, const fs::path& work) {
     fs::remove(file);
     const int code = run(program, folder, file);
     if (code != 0)
-      throw InputError({"the judge ended with code " + std::to_string(code), folder.string(),
+      throw InputError({"the program of --judge ended with code " + std::to_string(code), folder.string(),
                         program + " must write a verdict and end with 0",
                         code == 127 ? "give the path of a program" : "run it by hand on that folder"});
     const BlindVerdict verdict = read_verdict(file);

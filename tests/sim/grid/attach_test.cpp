@@ -38,7 +38,7 @@ TEST(Attach, ReportsErrors) {
   (void)said(grid, "3:SEXS");
   const std::vector<std::pair<const char*, const char*>> cases = {
       {"3", "an effect is attached by PLANT:EFFECT"},
-      {"3:NOTHING", "no effect 'NOTHING'"},
+      {"3:NOTHING", "unknown effect 'NOTHING'"},
       {"9:FORCEDOSC", "no plant 9 at --attach 9:FORCEDOSC (the plants are 1, 3)"},
       {"3:FORCEDOSC:size=1", "FORCEDOSC has amplitude, frequency"},
       {"3:FORCEDOSC:amplitude=big", "its value is not a number"},

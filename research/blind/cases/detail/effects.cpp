@@ -15,7 +15,7 @@ sim::plant::Block blind_block(const std::string& text, const std::string& where,
   const auto colon = text.find(':');
   sim::plant::Block block{blind_effect(text.substr(0, colon)), {}};
   if (!block.effect) {
-    problems.add("no effect '" + text.substr(0, colon) + "'", where,
+    problems.add("unknown effect '" + text.substr(0, colon) + "'", where,
                  "there are " + sim::library::compiled().names(), "choose one of these");
     return {};
   }
