@@ -33,12 +33,12 @@ def read_modules():
     for module, used in modules.items():
         for other in used:
             if other not in modules:
-                sys.exit(f"no module {other} at the swingbank_module line of {module} (no CMakeLists.txt makes it): name another")
+                sys.exit(f"no module {other} at the swingbank_module line of {module} (no CMakeLists.txt defines it): correct the name")
     try:
         graphlib.TopologicalSorter(modules).prepare()
     except graphlib.CycleError as circle:
-        sys.exit(f"a circle at the swingbank_module lines of {', '.join(circle.args[1][1:])} (a module stands above all that "
-                 "it uses): move what they share into a module below")
+        sys.exit(f"a dependency cycle at the swingbank_module lines of {', '.join(circle.args[1][1:])} (dependencies must be "
+                 "acyclic): move the common part into a lower module")
     return modules
 
 

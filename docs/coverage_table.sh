@@ -5,7 +5,7 @@
 # `swingbank effects --coverage --json`; the command must be in the PATH, or in build/release/bin or build/dev/bin.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-(($# > 0)) || { echo "no file at FILE.dyr (the table counts their records): name PSS/E .dyr files" >&2; exit 1; }
+(($# > 0)) || { echo "no file at FILE.dyr (the table counts the records of these files): name PSS/E .dyr files" >&2; exit 1; }
 for folder in build/release/bin build/dev/bin; do
   if [[ -x $folder/swingbank ]]; then PATH=$PATH:$PWD/$folder; fi
 done

@@ -119,7 +119,7 @@ table() {
     done | says |
     while IFS=$'\t' read -r file said; do
       if [[ -z $said ]]; then
-        echo "no head comment at $file (the table of its module takes its first sentence): say there what the file is" >&2
+        echo "no head comment at $file (the module's table shows its first sentence): describe the file in a first sentence" >&2
         return 1
       fi
       name=${file#"$1"/}

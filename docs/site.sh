@@ -11,7 +11,7 @@ if ! command -v mkdocs >/dev/null || [[ ! -d /usr/share/mkdocs/themes/material ]
   exit 1
 fi
 if [[ -n $(ls -A "$out" 2>/dev/null) && ! -e $out/search/search_index.js ]]; then
-  echo "files at $out (not those of an earlier site, which are replaced): give an empty or new folder" >&2
+  echo "other files at $out (only those of an earlier site are replaced): give an empty or new folder" >&2
   exit 1
 fi
 work=$(mktemp -d)

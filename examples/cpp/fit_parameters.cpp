@@ -21,7 +21,7 @@ int main(int argc, char** argv) try {
     free.push_back(
         {{swingbank::sim::plant::kMachineBlock, model.plant.machine.effect->parameter_index(name)}, prior});
   const fit::Fit result = fit::fit(model.under_test(), events, free);
-  std::printf("chi2 per value %.3f over %d values\n", result.chi2 / result.values, result.values);
+  std::printf("reduced chi-square %.3f (%d values)\n", result.chi2 / result.values, result.values);
   for (const fit::FittedParameter& p : result.parameters)
     std::printf("%s: %.4f -> %.4f [%.4f, %.4f] %s\n", p.full_name().c_str(), p.start, p.value, p.low, p.high,
                 p.unit.c_str());

@@ -11,4 +11,4 @@ with h5py.File(sys.argv[1]) as bank:
     names = list(bank.attrs["parameter_names"])
 distance = numpy.linalg.norm(points[:, None, :] - points[None, :, :], axis=2)
 numpy.fill_diagonal(distance, numpy.inf)
-print(f"{len(points)} points of {', '.join(str(n) for n in names)}; least Euclidean distance {distance.min():.4f}")
+print(f"{len(points)} samples of {', '.join(str(n) for n in names)}; smallest Euclidean distance {distance.min():.4f}")

@@ -34,7 +34,7 @@ fi
 for folder in mpi sim train validate research; do mv "$copy/$folder.all" "$copy/$folder/CMakeLists.txt"; done
 sed -i 's/^swingbank_module(sim\/core USES base)/swingbank_module(sim\/core USES base validate\/fleet_plant)/' "$copy/sim/CMakeLists.txt"
 if python3 "$copy/docs/architecture.py" --check 2>"$copy/said"; then
-  echo "a circle of modules went unnoticed" >&2
+  echo "a cycle of modules went unnoticed" >&2
   exit 1
 fi
-grep -q 'a circle at the swingbank_module lines' "$copy/said"
+grep -q 'a dependency cycle at the swingbank_module lines' "$copy/said"

@@ -157,12 +157,12 @@ TEST_F(TablesTest, ComparesUnseenWithTrainingGenerators) {
 }
 TEST_F(TablesTest, UserExperimentHasItsTitle) {
   json r = result("ieee14_from_39", "mlp", 0, 0.4);
-  r["title"] = "trained on IEEE 39, judged on IEEE 14";
+  r["title"] = "trained on IEEE 39, tested on IEEE 14";
   write("a", r);
   write("b", result("mine", "mlp", 0, 0.4));  // of a release without this entry
   EXPECT_THAT(
       make_tables(read(), {}).markdown,
-      AllOf(HasSubstr("## ieee14_from_39: trained on IEEE 39, judged on IEEE 14\n"), HasSubstr("## mine\n")));
+      AllOf(HasSubstr("## ieee14_from_39: trained on IEEE 39, tested on IEEE 14\n"), HasSubstr("## mine\n")));
 }
 TEST_F(TablesTest, SeveralRecordsOfAPlantHaveTheirOwnTable) {
   auto run = result("IV", "mlp", 0, 0.1);
