@@ -42,7 +42,7 @@ namespace {
 void refuse_in_float(const grid::Grid& grid) {
   Problems problems;
   const auto refuse = [&](const std::string& what, const std::string& why) {
-    problems.add(what + " in single-precision lanes", "option lanes", why, "choose 8 lanes, or 0");
+    problems.add(what + " cannot run in single precision", "option lanes", why, "choose 8 lanes, or 0");
   };
   for (const plant::Plant& plant : grid.plants) {
     const Effect& machine = *plant.machine.effect;
@@ -109,7 +109,7 @@ Batch::Batch(const grid::Grid& grid, BatchOptions options) : impl_(std::make_uni
       impl_->engine = std::make_unique<detail::EngineOf<FloatPack>>(grid, options);
       break;
     default:
-      throw InputError({fmt::format("{} lanes", options.lanes), "option lanes",
+      throw InputError({fmt::format("unsupported number of lanes: {}", options.lanes), "option lanes",
                         "the kernel is compiled for 1, 4 and 8 lanes in double and 16 in float",
                         "choose one of these, or 0 for the widest in double"});
   }

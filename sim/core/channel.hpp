@@ -23,7 +23,7 @@ inline constexpr std::array<ChannelRecord, 9> kChannels = {{
     {Channel::theta, "theta", "rad", "terminal voltage angle in the synchronous frame; constant while V = 0"},
     {Channel::Efd, "Efd", "pu", "field voltage, 1 pu on the air-gap line"},
     {Channel::Ifd, "Ifd", "pu", "field current, 1 pu on the air-gap line"},
-    {Channel::Tm, "Tm", "pu", "mechanical torque, or power where the convention says so"},
+    {Channel::Tm, "Tm", "pu", "mechanical torque; mechanical power with the conventions of PSS/E"},
 }};
 inline constexpr int kChannelCount = static_cast<int>(kChannels.size());  ///< number of channels
 /// Returns the record of the channel with this name, nullptr if there is none.

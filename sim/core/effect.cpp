@@ -18,8 +18,8 @@ std::string_view kind_name(const Effect& effect) {
 std::string slot_conflict(const Effect& source, const Effect& control) {
   if (!is_control(control.slot) || control.slot == Slot::setpoint) return {};
   if (is_of_converter(control.slot) == source.converter) return {};
-  return std::string(slot_name(control.slot)) + " is part of a " +
-         (source.converter ? "synchronous machine" : "converter") + ", and " + std::string(source.name) +
+  return std::string(slot_name(control.slot)) + " belongs to a " +
+         (source.converter ? "synchronous machine" : "converter") + ", but " + std::string(source.name) +
          " is a " + (source.converter ? "converter" : "synchronous machine");
 }
 

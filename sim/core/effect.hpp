@@ -365,7 +365,7 @@ struct Effect {
 
 /// Returns the name of the effect's slot, or "converter" if the effect is a converter.
 std::string_view kind_name(const Effect& effect);
-/// Returns why a control cannot belong to a source ("governor is part of a synchronous machine, ..."), empty
+/// Returns why a control cannot belong to a source ("governor belongs to a synchronous machine, ..."), empty
 /// if it can.
 std::string slot_conflict(const Effect& source, const Effect& control);
 

@@ -240,7 +240,7 @@ void RawReader::correct_impedances() {
     const auto found = tables_.find(c.table);
     if (found == tables_.end() || found->second.empty()) {
       if (options_.drop_refused)
-        network_.remark("missing impedance correction tables are ignored, as asked",
+        network_.remark("missing impedance correction tables are ignored, as requested",
                         c.name + " = " + std::to_string(c.table) + " (" + c.where + ")");
       else if (!units_only_)
         problems_.add(c.name + " = " + std::to_string(c.table), c.where, "there is no such correction table",

@@ -10,9 +10,9 @@ namespace {
 /// Locates the remote measurements of an added effect; a missing bus or branch becomes a problem.
 void find_far(const Grid& grid, plant::Plant& plant, const std::string& where, Problems& problems) {
   for (const NotThere& missing : look_far(grid, plant))
-    problems.add(fmt::format("no {} for the remote measurement of {} at plant {}", missing.what,
+    problems.add(fmt::format("{}, which {} of plant {} measures, is not in service", missing.what,
                              missing.control, plant.name),
-                 where, "the network has none in service",
+                 where, "it is missing in the network, or out of service",
                  "name equipment in service, or 0 to measure at the plant");
 }
 

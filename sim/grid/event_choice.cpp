@@ -33,8 +33,8 @@ void choose_fault_type(const EventTexts& texts, const Grid& grid, const EventPla
                        network::Event& event, Problems& problems) {
   const auto type = network::fault_type(texts.fault_type);
   if (!type)
-    problems.add("'" + texts.fault_type + "'", place(EventPart::fault_type, ""),
-                 "a fault is 3ph, slg, ll or llg", "write one of these");
+    problems.add("unknown fault type '" + texts.fault_type + "'", place(EventPart::fault_type, ""),
+                 "it must be 3ph, slg, ll or llg", "write one of these");
   std::optional<Complex> z0;
   if (!texts.z0.empty()) z0 = formats::read_impedance(texts.z0, place(EventPart::z0, ""), problems);
   if (problems.empty())
@@ -52,10 +52,10 @@ void check_followers(const Grid& grid, const EventPlace& place, const network::E
                                   [&](const plant::Block& b) { return b.effect->slot == slot; });
     };
     if (step.dVref != 0 && lacks(Slot::exciter))
-      problems.add("a step of Vref at plant " + plant->name, place(EventPart::vref_step, ""),
+      problems.add("step of Vref without effect at plant " + plant->name, place(EventPart::vref_step, ""),
                    "the plant has no exciter", "choose a plant with one, or add one to the .dyr");
     if (step.dPref != 0 && lacks(Slot::governor))
-      problems.add("a step of Pref at plant " + plant->name, place(EventPart::pref_step, ""),
+      problems.add("step of Pref without effect at plant " + plant->name, place(EventPart::pref_step, ""),
                    "the plant has no governor", "choose a plant with one, or add one to the .dyr");
   }
 }

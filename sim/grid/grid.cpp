@@ -86,7 +86,7 @@ class GridMaker {
           "give the bus number in its place");
     if (given.unended)
       grid_.network.remark(
-          "records without a final '/' end at the next record or at the end of the file",
+          "records without a final '/'; each is taken to end at the next record or at the end of the file",
           given.model + " of '" + given.id + "' at bus " + std::to_string(given.bus) + " (" + where + ")");
     Problems refused;
     take(*effect, reach, plain(given, *effect), where, refused);
@@ -158,13 +158,12 @@ class GridMaker {
     if (const std::string left_out = remark_on(block, where, plant.name); !left_out.empty())
       grid_.network.remark("values that the equations interpret differently or ignore", left_out);
     for (const std::string& text : plant::unusual_texts(block, where))
-      grid_.network.remark("values outside the range that is usual for them", text);
+      grid_.network.remark("values outside their usual range", text);
     const plant::Plant before = plant;
     const std::string warning = place(plant, std::move(block), {g, grid_.network.origin}, where, problems);
     if (!problems.empty()) plant = before;
     if (!warning.empty())
-      grid_.network.remark("where the reactance of the .dyr differs from ZX, that of the .dyr is used",
-                           warning);
+      grid_.network.remark("reactance of the .dyr differs from ZX of the .raw; the .dyr is used", warning);
   }
   void report_empty(const formats::DyrRecord& record, const std::string& where) {
     for (const int i : record.empty)
@@ -185,13 +184,13 @@ class GridMaker {
       const auto& [name, user] = model;
       const std::string others =
           one.records > 1 ? " and " + std::to_string(one.records - 1) + " more" : std::string();
-      problems_.add((user ? "user-written model '" : "unknown model '") + name + "' of " + one.first + others,
-                    one.where, lacking_text(dyr_),
-                    "leave it out with --ignore-model " + name +
-                        (one.parameters == 0
-                             ? std::string()
-                             : ", or map it to a model with as many parameters (" +
-                                   std::to_string(one.parameters) + ") by --map-model " + name + "=OTHER"));
+      problems_.add(
+          (user ? "user-written model '" : "unknown model '") + name + "' of " + one.first + others,
+          one.where, lacking_text(dyr_),
+          "leave it out with --ignore-model " + name +
+              (one.parameters == 0 ? std::string()
+                                   : ", or map it to a model with " + std::to_string(one.parameters) +
+                                         " parameters: --map-model " + name + "=OTHER"));
     }
   }
   /// Adds a model for one load, or with id * for every load, of a bus, owner, zone, area or of the grid.
@@ -295,7 +294,8 @@ class GridMaker {
     check_fit(plant, dyr_, problems_);
     sort_controls(plant);
     for (const std::string& text : idle_controls(plant))
-      grid_.network.remark("controls of the field voltage without effect", text);
+      grid_.network.remark("controls of the field voltage have no effect on a machine without field winding",
+                           text);
   }
   [[nodiscard]] std::string unit_text(int generator) const {
     const network::Generator& g = grid_.network.generators[static_cast<std::size_t>(generator)];
@@ -310,7 +310,8 @@ class GridMaker {
         grid_.plants, {}, [](const plant::Plant& p) { return p.machine.effect ? p.generator : -1; });
     const bool at_the_end = modelled != grid_.plants.end() && modelled->machine.effect &&
                             modelled->generator < std::ranges::min(unmodelled_);
-    return at_the_end ? "; all generators before them have one: the .dyr may be truncated" : "";
+    return at_the_end ? "; all generators before them have a machine model, so the .dyr may be truncated"
+                      : "";
   }
   /// Reports all generators without a machine model in one problem.
   void report_unmodelled() {
@@ -355,7 +356,7 @@ class GridMaker {
       network::SwitchedShunt& s = n.switched[stepped.which];
       const auto mvar = [&](double b) { return fmt::format("{:.2f} Mvar", b * n.base_mva); };
       if (stepped.susceptance != s.present)
-        n.remark("switched shunts were stepped, as asked",
+        n.remark("switched shunts were stepped, as requested",
                  bus_text(s.bus) + " " + mvar(s.present) + " to " + mvar(stepped.susceptance));
       if (!stepped.in_band)
         n.remark("switched shunts have no step within their voltage band",
@@ -397,7 +398,7 @@ class GridMaker {
       network::Load load{
           g.bus, "-" + g.id, -s, {}, {}, bus.area, bus.zone, bus.owner, network::LoadKind::generator};
       grid_.network.remark(
-          "generators without a machine model are negative loads, as asked",
+          "generators without a machine model become negative loads, as requested",
           unit_text(k) + fmt::format(" {:.2f} MW, {:.2f} Mvar", s.real() * grid_.network.base_mva,
                                      s.imag() * grid_.network.base_mva));
       grid_.network.loads.push_back(std::move(load));

@@ -71,8 +71,8 @@ void set_load(Grid& grid, int load, plant::Block block, const std::string& where
   consumer.block = std::move(block);
   consumer.regulated = regulated_index(grid.network, consumer.block, where, problems);
   if (consumer.consumption == Complex{} && l.kind != network::LoadKind::shunt) {
-    problems.add("load " + consumer.name + " draws nothing", where,
-                 "its P and Q are zero in " + grid.network.origin, "choose a load that draws power");
+    problems.add("load " + consumer.name + " has zero consumption", where,
+                 "P = Q = 0 in " + grid.network.origin, "choose a load with consumption");
     return;
   }
   const auto same = std::ranges::find(grid.loads, load, &plant::Consumer::load);
@@ -100,7 +100,7 @@ void compose(const Grid& grid, int load, plant::Block& block, const std::string&
     constexpr double least = 1e-9;  // relative size below which the sum has no significant digits
     if (std::abs(sum) > least * (std::abs(a) + std::abs(b) + std::abs(c)) || (a == 0 && b == 0 && c == 0))
       return;
-    problems.add(fmt::format("the parts of {} cancel", name), where,
+    problems.add(fmt::format("the constant-power, -current and -admittance parts of {} cancel", name), where,
                  fmt::format("{} needs fractions of their sum", block.effect->name),
                  "split the load into two with different ids");
   };

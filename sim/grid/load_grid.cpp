@@ -39,7 +39,7 @@ void take_machines(network::Network& network, const formats::DydSurvey& dyd, con
     g->zr = machine->second.resistance;
     g->zx = machine->second.reactance.value_or(0);  // 0: no value to compare with
     if (machine->second.mva == g->mva || !(machine->second.mva > 0)) continue;
-    network.remark("where machine bases of the .dyd and the network differ, those of the .dyd are used",
+    network.remark("machine bases differ between the .dyd and the network; the .dyd is used",
                    fmt::format("'{}' at bus {}: {:g} MVA, not {:g} ({})", record.id, record.bus,
                                machine->second.mva, g->mva, where));
     g->rt *= machine->second.mva / g->mva;
@@ -47,7 +47,7 @@ void take_machines(network::Network& network, const formats::DydSurvey& dyd, con
     g->mva = machine->second.mva;
   }
   for (const auto& [model, count] : dyd.passed_over)
-    network.remark("records of the .dyd that are not read", fmt::format("{} {}", count, model));
+    network.remark("records of the .dyd were skipped", fmt::format("{} {}", count, model));
 }
 
 }  // namespace

@@ -86,10 +86,11 @@ class UnitReader {
                            net().origin, ids.empty() ? nearest_generators() : "the ids there are " + ids,
                            "correct bus and id");
     if (units.size() > 1 && running.size() != 1)
-      return problems_.add(fmt::format("{} generators at bus {}", units.size(), choice_.bus), net().origin,
-                           "their ids are " + ids,
-                           "choose one by its id (--id); for a record of both make a plant file of each "
-                           "and a point file for --point (configs/plants/README.md)");
+      return problems_.add(
+          fmt::format("{} generators at bus {}", units.size(), choice_.bus), net().origin,
+          "their ids are " + ids,
+          "choose one by --id; if a record contains several units, make one plant file per unit "
+          "and a point file (--point; configs/plants/README.md)");
     const std::size_t at = units.size() == 1 ? units[0] : running[0];
     generator_ = static_cast<int>(at);
     if (at < survey_.generator_line.size()) faults_of(survey_.generator_line[at], 1);
@@ -190,8 +191,9 @@ class UnitReader {
                                    Conventions::psse(net().frequency));
     } catch (const InputError& error) {
       const Problem& p = error.problems().front();  // the other problems follow from it
-      unit_.notes.push_back(fmt::format("at P, Q and V of {}: {} ({}): a record that starts there is refused",
-                                        net().origin, p.what, p.why));
+      unit_.notes.push_back(fmt::format(
+          "the operating point of {} is infeasible for this model: {} ({}); records that start there are refused",
+          net().origin, p.what, p.why));
     }
   }
   /// Returns a possible reason for a missing machine record.
@@ -316,9 +318,9 @@ class UnitReader {
     const std::set<int> ends = transformers_to();
     if (ends.empty() || ends.size() > 2) return;
     unit_.notes.push_back(fmt::format(
-        "a transformer connects bus {} with bus {}; the model covers the unit up to bus {}: for records from bus {} "
-        "give --measured-at {} (under [grid] of a plant file: measured_at)",
-        unit_.bus, fmt::join(ends, " and bus "), unit_.bus, *ends.begin(), *ends.begin()));
+        "the model ends at bus {}; for records taken at bus {}, behind the transformer, use --measured-at {} "
+        "(under [grid] of a plant file: measured_at)",
+        unit_.bus, fmt::join(ends, " or bus "), *ends.begin()));
   }
   void read_transformer(int measured_at) {
     if (measured_at == unit_.bus) return;
@@ -383,14 +385,12 @@ class UnitReader {
     for (const auto& l : net().loads)
       if (l.bus == bus)
         unit_.notes.push_back(
-            fmt::format("load '{}' at bus {} is part of the measurement at bus {}; the model "
-                        "has none",
+            fmt::format("load '{}' at bus {} is included in the measurement at bus {} but not in the model",
                         l.id, unit_.bus, measured_at));
     for (const auto& s : net().shunts)
       if (s.bus == bus && s.admittance != Complex{})
         unit_.notes.push_back(
-            fmt::format("shunt '{}' at bus {} is part of the measurement at bus {}; the "
-                        "model has none",
+            fmt::format("shunt '{}' at bus {} is included in the measurement at bus {} but not in the model",
                         s.id, unit_.bus, measured_at));
   }
   /// Adds problems for other equipment between the transformers, and for parallel transformers of different
@@ -398,9 +398,9 @@ class UnitReader {
   void passed(const StepUp& way, int measured_at) {
     for (std::size_t k = 1; k + 1 < way.buses.size(); ++k)
       if (const std::string other = joins_on_the_way(net(), way, way.buses[k]); !other.empty())
-        problems_.add(fmt::format("{} between bus {} and bus {}", other, unit_.bus, measured_at),
-                      net().origin, fmt::format("the current at bus {} is not only the unit's", measured_at),
-                      kOfBoth);
+        problems_.add(
+            fmt::format("{} between bus {} and bus {}", other, unit_.bus, measured_at), net().origin,
+            fmt::format("the current at bus {} includes that of other equipment", measured_at), kOfBoth);
     if (!way.same_ratio)
       problems_.add(fmt::format("parallel transformers of different ratios between bus {} and bus {}",
                                 unit_.bus, measured_at),

@@ -230,7 +230,8 @@ void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>
 /// A generator whose regulated bus is out of service regulates its own bus.
 void regulate_own_bus(Network& n, Generator& g, const std::string& place) {
   if (g.regulated < 0 || at(n, g.regulated).type != BusType::isolated) return;
-  n.remark("generators that regulate a bus out of service regulate their own at the file's voltage", place);
+  n.remark("generators whose regulated bus is out of service regulate their own bus, at the file's voltage",
+           place);
   g.regulated = -1;
   g.vset = at(n, g.bus).vm;
 }
@@ -242,7 +243,7 @@ void settle_duplicates(Network& n, const std::vector<Duplicate>& duplicates, boo
   if (duplicates.empty()) return;
   if (!by_voltages) {
     for (const Duplicate& d : duplicates)
-      n.remark("duplicate equipment is kept under a new id, as asked", kept_as(d));
+      n.remark("duplicate equipment is kept under a new id, as requested", kept_as(d));
     return;
   }
   const FileBalance balance(n, duplicates, devices);
@@ -396,8 +397,8 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
         at_bus.begin()->second + " without a model", where,
         "its power follows from the file's voltages, but they are not a solution: the mismatch is " +
             pu(worst * n.base_mva) + " MVA" + (bus < 0 ? std::string() : " at " + n.bus_text(bus)),
-        "solve the case before saving it, or continue with --devices file, which accepts the mismatch, "
-        "or with --devices none, which leaves the equipment out");
+        "solve the case before saving it; or use --devices file (accept the mismatch) or --devices none "
+        "(ignore the equipment)");
     return;
   }
   for (const auto& [bus_of, names] : at_bus) {
@@ -424,7 +425,7 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
 void check_finite(const Network& n, const std::string& file, Problems& problems) {
   const auto report = [&](const std::string& what, int bus, std::initializer_list<double> values) {
     if (std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) return;
-    problems.add(what + " at " + n.bus_text(bus) + " is beyond the range of numbers", file,
+    problems.add(what + " at " + n.bus_text(bus) + " has a value that is not finite", file,
                  "a value is extremely large, or its base extremely small", "correct the value or the base");
   };
   for (const Load& l : n.loads)

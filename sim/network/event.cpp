@@ -1,5 +1,7 @@
 #include "sim/network/event.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +13,7 @@
 namespace swingbank::sim::network {
 namespace {
 
-std::string seconds(double t) { return std::to_string(t) + " s"; }
+std::string seconds(double t) { return fmt::format("{:g} s", t); }
 
 /// Half-open interval [start, end) during which something is switched.
 struct Interval {
@@ -32,7 +34,7 @@ void check_overlap(const std::vector<Interval>& list, const std::string& noun, c
   for (std::size_t i = 0; i < list.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (list[i].what == list[j].what && list[i].start < list[j].end && list[j].start < list[i].end)
-        problems.add("two overlapping " + noun, name(list[i].what),
+        problems.add("overlapping " + noun, name(list[i].what),
                      seconds(list[j].start) + " to " + seconds(list[j].end) + " and " +
                          seconds(list[i].start) + " to " + seconds(list[i].end),
                      "let one end before the other starts");
@@ -57,9 +59,8 @@ std::vector<Interval> fault_intervals(const Event& event, const Network& network
     if (network.buses[static_cast<std::size_t>(f.bus)].type == BusType::isolated)
       problems.add("fault at an isolated bus", where, "nothing is connected there", "choose another bus");
     if (!(f.z.real() >= 0.0) || !std::isfinite(f.z.real()) || !std::isfinite(f.z.imag()))
-      problems.add(
-          "fault impedance " + std::to_string(f.z.real()) + " + j" + std::to_string(f.z.imag()) + " pu",
-          where, "resistance must be finite and not negative", "give r >= 0; r = x = 0 is a bolted fault");
+      problems.add(fmt::format("fault impedance {:g} + j{:g} pu", f.z.real(), f.z.imag()), where,
+                   "resistance must be finite and not negative", "give r >= 0; r = x = 0 is a bolted fault");
     list.push_back({f.bus, f.t_on, f.t_off});
   }
   check_overlap(
@@ -80,7 +81,7 @@ std::vector<Interval> trip_intervals(const Event& event, const Network& network,
     const Interval interval{t.branch, t.t_open, t.t_close.value_or(std::numeric_limits<double>::infinity())};
     check_times(interval, where, problems);
     if (!network.branches[static_cast<std::size_t>(t.branch)].in_service)
-      problems.add("trip of an open branch", where, "it is out of service from the start",
+      problems.add("trip of a branch that is out of service", where, "there is nothing to open",
                    "choose a branch in service");
     list.push_back(interval);
   }
@@ -115,8 +116,8 @@ std::vector<Interval> generator_intervals(const Event& event, const Network& net
     const std::string where = generator_name(network, t.generator);
     check_times({t.generator, t.time, kForGood}, where, problems);
     if (!(t.part > 0.0 && t.part <= 1.0))
-      problems.add("a trip of " + std::to_string(t.part) + " of the units", where,
-                   "it must be a fraction of the units", "give more than 0 and at most 1");
+      problems.add(fmt::format("tripped fraction {:g} of the units", t.part), where,
+                   "it must be above 0 and at most 1", "correct the fraction");
     if (t.part >= 1.0) list.push_back({t.generator, t.time, kForGood});
   }
   check_overlap(
@@ -137,9 +138,8 @@ void check_parts(const Event& event, const Network& network, Problems& problems)
   constexpr double least = 1e-6;  // below it only rounding errors remain
   for (const auto& [generator, left] : partly_tripped_at(event, kForGood, {}))
     if (left < least && generator >= 0 && generator < static_cast<int>(network.generators.size()))
-      problems.add("partial trips that leave " + std::to_string(left) + " of the units",
-                   generator_name(network, generator), "a part must stay connected",
-                   "lower the fractions, or trip the whole generator");
+      problems.add("partial trips disconnect all units", generator_name(network, generator),
+                   "a part must stay connected", "lower the fractions, or trip the whole generator");
 }
 
 std::vector<Interval> load_intervals(const Event& event, const Network& network, Problems& problems) {

@@ -33,7 +33,8 @@ void check_zero_sequence(FaultType type, bool given, Problems& problems) {
     problems.add("no zero-sequence impedance", "--fault-type", "the fault's current returns through ground",
                  "give --z0 R:X, of the grid at the faulted bus in pu on the network's base");
   if (!to_ground(type) && given)
-    problems.add("a zero-sequence impedance", "--z0", "a fault without ground has no zero-sequence current",
+    problems.add("unexpected zero-sequence impedance", "--z0",
+                 "a fault without ground has no zero-sequence current",
                  "leave it out, or choose --fault-type slg or llg");
 }
 

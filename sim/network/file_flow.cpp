@@ -1,4 +1,6 @@
 // The file's voltages as power-flow solution, and their imbalances.
+#include <fmt/format.h>
+
 #include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
@@ -110,7 +112,7 @@ PowerFlow flow_of_file(Network& network) {
   std::ranges::sort(sizes, std::greater{});
   for (const auto& [size, i] : sizes)
     network.remark("imbalances of the file's voltages are balanced by constant admittances, largest first",
-                   network.bus_text(static_cast<int>(i)) + " " + std::to_string(size) + " MVA");
+                   network.bus_text(static_cast<int>(i)) + fmt::format(": {:.2f} MVA", size));
   return flow;
 }
 

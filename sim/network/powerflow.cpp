@@ -49,7 +49,7 @@ void check_slack(const Network& n, const std::vector<double>& supply) {
   if (!idle.empty())
     problems.add(
         "slack " + bus_list(n, idle) + (idle.size() == 1 ? " has" : " have") + " no generator in service",
-        n.origin, "nothing there can balance the power",
+        n.origin, "a slack bus needs a generator that balances the power",
         "put a generator in service or choose another slack bus");
   problems.raise();
 
@@ -358,16 +358,16 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
     throw InputError({"the power flow balances only with voltages near 0", network.origin,
                       "this is not an operating point: the grid cannot supply its loads",
                       "check loads and impedances, or keep the file's voltages (--start file)"});
-  throw InputError({"the power flow diverges, worst at " + bus_list(network, {newton.worst_bus()}) +
-                        " with a mismatch of " + std::to_string(size) + " pu (" +
-                        std::to_string(size * network.base_mva) + " MVA)" +
-                        (limited ? ", with generators at their reactive limits" : ""),
-                    network.origin,
-                    std::to_string(options.limit) +
-                        " iterations from the file's voltages and from a flat start did not balance it",
-                    std::string("check loads, dispatch and impedances near that bus") +
-                        (limited ? ", ignore the limits (--q-limits ignore)" : "") +
-                        ", or keep the file's voltages (--start file)"});
+  throw InputError(
+      {"the power flow diverges, worst at " + bus_list(network, {newton.worst_bus()}) +
+           " with a mismatch of " + std::to_string(size) + " pu (" + std::to_string(size * network.base_mva) +
+           " MVA)" + (limited ? ", with generators at their reactive limits" : ""),
+       network.origin,
+       std::to_string(options.limit) +
+           " iterations did not converge, neither from the file's voltages nor from a flat start",
+       std::string("check loads, dispatch and impedances near that bus") +
+           (limited ? ", ignore the limits (--q-limits ignore)" : "") +
+           ", or keep the file's voltages (--start file)"});
 }
 
 /// Shares the power of a bus among its generators, without limits. If the power is nearly that of the file,

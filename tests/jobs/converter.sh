@@ -46,12 +46,12 @@ compare --model "$work/wrong.toml" --out "$work/wrong" >"$work/said" &&
   cat "$work/case.dyr"
   echo "32 'SEXS' 1 0.1 10 50 0.1 -4 5 /"
 } >"$work/mixed.dyr"
-refuses "an exciter of a converter" "SEXS for generator 32 .*exciter is part of a synchronous machine" \
+refuses "an exciter of a converter" "SEXS for generator 32 .*exciter belongs to a synchronous machine" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/mixed.dyr" --out "$work/x.csv"
-refuses "a plant control of a machine" "REPCA1 for plant 30 .*plant_control is part of a converter" \
+refuses "a plant control of a machine" "REPCA1 for plant 30 .*plant_control belongs to a converter" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/case.dyr" --attach 30:REPCA1 --out "$work/x.csv"
 grep -v REPCA1 "$work/case.dyr" >"$work/without.dyr"
-refuses "a plant control that measures nowhere" "no bus 999 for the remote measurement of REPCA1 at plant 32 at --attach" \
+refuses "a plant control that measures nowhere" "bus 999, which REPCA1 of plant 32 measures, is not in service at --attach" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/without.dyr" --attach 32:REPCA1:RemoteBus=999 --out "$work/x.csv"
 
 # A source with built-in control, and one behind a reactance: each explains its own run, but not with a wrong gain.

@@ -271,7 +271,7 @@ Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking la
   const std::string record_text = fmt::format("{} of '{}' at bus {} has {} of {} values", record.model,
                                               record.id, record.bus, has, takes);
   if (has < takes)
-    return {true, "missing values at the end of records are zero or defaults, as asked",
+    return {true, "missing values at the end of records are set to zero or to defaults, as requested",
             fmt::format("{}: {} ({})", record_text, fill(effect, record.values, lacking), where)};
   const std::vector<double> surplus(record.values.begin() + static_cast<std::ptrdiff_t>(takes),
                                     record.values.end());

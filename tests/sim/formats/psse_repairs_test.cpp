@@ -94,7 +94,7 @@ TEST(RepeatedBranch, IsKeptOnRequestWhateverTheVoltages) {
   ASSERT_THAT(n.branches, SizeIs(4));
   EXPECT_EQ(n.branches[2].circuit, "R1");
   EXPECT_EQ(n.branches[3].circuit, "R2");
-  EXPECT_THAT(places(n, "kept under a new id, as asked"), SizeIs(2));
+  EXPECT_THAT(places(n, "kept under a new id, as requested"), SizeIs(2));
 }
 
 TEST(RepeatedEquipment, OfEveryKindIsDecidedByTheVoltages) {
@@ -166,8 +166,9 @@ TEST(MissingReference, IsReplacedAndNamed) {
   EXPECT_THAT(dropped.switched, IsEmpty());
   EXPECT_EQ(dropped.shunts.back().admittance.imag(), 0.05);
   EXPECT_EQ(dropped.branches[2].x, 0.1);
-  EXPECT_THAT(places(dropped, "stay at BINIT, as asked"), SizeIs(1));
-  EXPECT_THAT(places(dropped, "correction tables are ignored, as asked"), ElementsAre(HasSubstr("TAB1 = 3")));
+  EXPECT_THAT(places(dropped, "stay at BINIT, as requested"), SizeIs(1));
+  EXPECT_THAT(places(dropped, "correction tables are ignored, as requested"),
+              ElementsAre(HasSubstr("TAB1 = 3")));
 }
 
 TEST(ThreeWindings, StarVoltageAndBaseOfZeroAreReplacedAndNamed) {

@@ -67,8 +67,9 @@ TEST(Attach, RemoteMeasurementsMustExistInTheNetwork) {
       said(other, "104:REPCA1:RemoteBus=999,FromBus=102,ToBus=101,Circuit=1"),
       ::testing::ElementsAre(
           ::testing::HasSubstr(
-              "no bus 999 for the remote measurement of REPCA1 at plant 104 at --attach 104:REPCA1:"),
-          ::testing::HasSubstr("no branch 102 - 101, circuit 1 for the remote measurement of REPCA1")));
+              "bus 999, which REPCA1 of plant 104 measures, is not in service at --attach 104:REPCA1:"),
+          ::testing::HasSubstr(
+              "branch 102 - 101, circuit 1, which REPCA1 of plant 104 measures, is not in service")));
 }
 
 }  // namespace

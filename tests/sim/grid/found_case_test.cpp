@@ -63,7 +63,7 @@ TEST(FoundCase, NamesASolutionThatDiffersFromTheFile) {
   options.start_from_file = true;
   const Grid file = make(raw, kBoth, options);
   EXPECT_EQ(file.flow.voltage[2], std::polar(0.99, -8.7 * std::acos(-1.0) / 180.0));
-  EXPECT_THAT(places(file, "imbalances of the file's voltages"), ElementsAre(HasSubstr("bus 103 ")));
+  EXPECT_THAT(places(file, "imbalances of the file's voltages"), ElementsAre(HasSubstr("bus 103: ")));
   EXPECT_TRUE(places(file, "differs").empty());
 }
 
@@ -159,7 +159,7 @@ TEST(FoundCase, AcceptsGenrouWithoutQAxisTransientCircuitWithARemark) {
 
 TEST(FoundCase, AcceptsUnusualValuesWithARemark) {
   const Grid grid = make({}, kBoth + "101 'TGOV1' 1 0.05 0.5 2 -1.5 2 7 0 /\n");
-  EXPECT_THAT(places(grid, "usual for them"),
+  EXPECT_THAT(places(grid, "usual range"),
               ElementsAre("case.dyr:3: VMIN = -1.5 pu (TGOV1's is usually -1 to 1 pu)"));
   EXPECT_EQ(grid.plants[0].controls[0].p[3], -1.5);
 }
@@ -170,7 +170,7 @@ TEST(FoundCase, ReportsAnIneffectiveExciter) {
                          "101 'GENROU' 1 8.0 0.03 0.4 0.05 6.5 0 1.8 1.7 0.3 0.55 0.25 0.2 0.05 0.3 /\n"
                          "102 'GENCLS' 1 3 0 /\n101" +
                              sexs + "102" + sexs);
-  EXPECT_THAT(places(grid, "without effect"),
+  EXPECT_THAT(places(grid, "without field winding"),
               ElementsAre("SEXS of generator 102: GENCLS has no field winding"));
 }
 
@@ -183,7 +183,7 @@ TEST(FoundCase, RecognisesTruncatedFiles) {
   EXPECT_THAT(said("101 'GENCLS' 1 3 0 /\n101 'SEXS' 1 0.1 10 100 0.1 0 3"),
               ::testing::AllOf(HasSubstr("no machine model for generator '1' at bus 102"),
                                HasSubstr("no '/' ends the last record, on line 2")));
-  EXPECT_THAT(said("101 'GENCLS' 1 3 0 /\n"), HasSubstr("all generators before them have one"));
+  EXPECT_THAT(said("101 'GENCLS' 1 3 0 /\n"), HasSubstr("all generators before them have a machine model"));
   EXPECT_THAT(said("102 'GENCLS' 1 3 0 /\n"), ::testing::Not(HasSubstr("truncated")));
 }
 

@@ -182,7 +182,8 @@ TEST_F(UnitTest, WindingsOfAThreeWindingTransformerAreJoined_WhenTheThirdIsUnloa
   const std::string three =
       "102,103,104,'1',1,1,1,0,0,2,'',1\n0,0.10,100,0,0.20,100,0,0.30,100,1.0,0\n1.0\n1.0\n1.0\n";
   write(behind(three, kMiddle).text(), "102 'GENROU' 1 " + kRoundRotor + " /\n");
-  EXPECT_THAT(read_unit(choice(102)).notes, Contains(HasSubstr("connects bus 102 with bus 103 and bus 104")));
+  EXPECT_THAT(read_unit(choice(102)).notes,
+              Contains(HasSubstr("the model ends at bus 102; for records taken at bus 103 or bus 104")));
   UnitChoice c = choice(102);
   c.measured_at = 103;
   const plant::Block block = read_unit(c).plant.transformer;

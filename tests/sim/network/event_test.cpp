@@ -73,10 +73,10 @@ TEST_F(Segments, ReportsEveryErrorOfAnEvent) {
                     {{0, 2.0, 2.0}, {1, 1.0, {}}, {-1, 1.0, {}}, {0, 3.0, {}}, {0, 4.0, 5.0}}};
   const std::string text = formats::sentences_of([&] { segments(event, network); });
   for (const char* what :
-       {"end = 1.9", "start = -1.0", "two overlapping faults at event, bus 102", "fault at bus index 77",
-        "fault at an isolated bus at event, bus 200", "start = nan", "fault impedance -1.0", "end = 2.0",
-        "trip of an open branch at event, branch 102-103 circuit 1", "trip of branch index -1",
-        "two overlapping trips at event, branch 101-103 circuit 1"})
+       {"end = 1.9", "start = -1 s", "overlapping faults at event, bus 102", "fault at bus index 77",
+        "fault at an isolated bus at event, bus 200", "start = nan", "fault impedance -1 + j0 pu",
+        "end = 2 s", "trip of a branch that is out of service at event, branch 102-103 circuit 1",
+        "trip of branch index -1", "overlapping trips at event, branch 101-103 circuit 1"})
     EXPECT_THAT(text, HasSubstr(what));
 }
 
