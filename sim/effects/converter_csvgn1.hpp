@@ -131,8 +131,9 @@ struct Model : shared::ControlledCurrent<Model> {
     x[B] = c[capacitor] - (s.Vi * s.Ir - s.Vr * s.Ii) / square_2;
     x[first] = x[lagged] = x[B] / p[K];
     if (value_of(x[lagged]) > value_of(c[most]) || value_of(x[lagged]) < value_of(c[least]))
-      return fmt::format("it would need the regulator at {:.4f} pu, and VMIN, VMAX are {:g}, {:g} pu",
-                         value_of(x[B]), value_of(p[VMIN]), value_of(p[VMAX]));
+      return fmt::format(
+          "the operating point needs the regulator at {:.4f} pu, outside VMIN to VMAX = {:g} to {:g} pu",
+          value_of(x[B]), value_of(p[VMIN]), value_of(p[VMAX]));
     steady_voltage(s, x);
     s.V = sqrt(square_2);
     c[Vref] = s.V - x[first];

@@ -174,10 +174,11 @@ struct Model : shared::ControlledCurrent<Model> {
     steady_voltage(s, x);
     const T ceiling = low_voltage_limit(c, x, V);
     if (value_of(x[Ip]) > value_of(ceiling))
-      return fmt::format("it would need an active current of {:.4f} pu, and LVPL limits it to {:.4f} pu",
-                         value_of(x[Ip]), value_of(ceiling));
+      return fmt::format(
+          "the operating point needs an active current of {:.4f} pu, but LVPL limits it to {:.4f} pu",
+          value_of(x[Ip]), value_of(ceiling));
     if (value_of(x[Iq] - drawn) < value_of(c[iolim]))
-      return fmt::format("it would need a reactive current of {:.4f} pu, below Iolim = {:.4f} pu",
+      return fmt::format("the operating point needs a reactive current of {:.4f} pu, below Iolim = {:.4f} pu",
                          value_of(x[Iq] - drawn), value_of(c[iolim]));
     if (!(value_of(Q) > 0.0)) c[q_rise] = T(renewable::kNoLimit);
     if (!(value_of(Q) < 0.0)) c[q_fall] = T(-renewable::kNoLimit);

@@ -68,7 +68,7 @@ struct Model : shared::BehindImpedance<Model> {
                                      {"Iq", "pu", "reactive current"},
                                      {"Vf", "pu", "measured voltage"},
                                      {"Ed", "pu", "inner voltage along V"},
-                                     {"Eq", "pu", "inner voltage across V"},
+                                     {"Eq", "pu", "inner voltage perpendicular to V"},
                                      kVrlag,
                                      kVilag};
   enum M { voltage, target_d, target_q, scratch };

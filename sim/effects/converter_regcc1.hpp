@@ -132,7 +132,7 @@ struct Model : shared::BehindImpedance<Model> {
       {.name = "Sp", .unit = "pu", .meaning = "integral of the active current's control", .bends = true},
       {.name = "Sq", .unit = "pu", .meaning = "integral of the reactive current's control", .bends = true},
       {"Ed", "pu", "inner voltage along phi"},
-      {"Eq", "pu", "inner voltage across phi"},
+      {"Eq", "pu", "inner voltage perpendicular to phi"},
       {"phi", "rad", "angle of the phase-locked loop in the synchronous frame"},
       {.name = "w",
        .unit = "rad/s",

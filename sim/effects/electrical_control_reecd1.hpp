@@ -37,7 +37,7 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
   Iqcmd within VDL1(Vf), Ipcmd within VDL2(Vf): linear between the points (Vq, Iq) and (Vp, Ip), up to the last
       rising voltage; all 0: no limit. Ipcmd >= -Ke times its upper limit.
   |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
-  Vf < Vblkl or Vf > Vblkh blocks both currents, until Tblk after it.
+  Both currents are blocked while Vf < Vblkl or Vf > Vblkh, and for Tblk afterwards.
   Vref0 = 0: the voltage at the operating point. The regulated terminal is the unit's own.
 )";
   static constexpr int kTablePoints = 10;
@@ -97,8 +97,8 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
                 "voltage below which the converter is blocked", kOff},
       Parameter{"Vblkh", "Vblkh", "pu", 99.0, 0.8, 99.0, kNoNullValue, "voltage above which it is blocked",
                 kOff},
-      Parameter{"Tblk", "Tblk", "s", 0.0, 0.0, 10.0, 0.0, "time after that for which it stays blocked",
-                kOff}};
+      Parameter{"Tblk", "Tblk", "s", 0.0, 0.0, 10.0, 0.0,
+                "time for which the converter stays blocked afterwards", kOff}};
   static constexpr auto parameters =
       renewable::joined(kCodes, ride_through, kAfterDip, regulators, kBias, orders,
                         renewable::limit_points<kTablePoints>(1.11, 1.11), kBehind);

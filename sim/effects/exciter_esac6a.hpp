@@ -83,9 +83,9 @@ struct Model : shared::Alternator<Model> {
       {"KD", "KD", "pu", 1.91, 0.0, 5.0, 0.0, "alternator's armature reaction"},
       {"KE", "KE", "pu", 1.6, 0.0, 5.0, kNoNullValue, "self-excitation constant"},
       {"E1", "E1", "pu", 7.4, 0.0, 50.0, kNoNullValue, "first point of saturation"},
-      {"SE1", "SE(E1)", "-", 0.214, 0.0, 2.0, 0.0, "saturation there"},
+      {"SE1", "SE(E1)", "-", 0.214, 0.0, 2.0, 0.0, "saturation factor at E1"},
       {"E2", "E2", "pu", 5.55, 0.0, 50.0, kNoNullValue, "second point of saturation"},
-      {"SE2", "SE(E2)", "-", 0.044, 0.0, 2.0, 0.0, "saturation there"}};
+      {"SE2", "SE(E2)", "-", 0.044, 0.0, 2.0, 0.0, "saturation factor at E2"}};
   static constexpr int dyr_columns[] = {TR, KA,    TA, TK, TB, TC, VAMAX, VAMIN, VRMAX, VRMIN, TE, VFELIM,
                                         KH, VHMAX, TH, TJ, KC, KD, KE,    E1,    SE1,   E2,    SE2};
   enum C {

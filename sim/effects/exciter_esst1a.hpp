@@ -49,7 +49,8 @@ struct Model {
   static constexpr Source defaults_from = literature::own("as EXST1's");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
-      {"UEL", "UEL", "code", 1.0, 1.0, 3.0, kNoNullValue, "input of an under-excitation limiter", kAsEffect,
+      {"UEL", "UEL", "code", 1.0, 1.0, 3.0, kNoNullValue,
+       "input of an under-excitation limiter: 1 voltage error, 2 and 3 gates (not modelled)", kAsEffect,
        shared::kCode},
       {"VOS", "VOS", "code", 1.0, 1.0, 2.0, kNoNullValue,
        "input of the stabiliser: 1 voltage error, 2 after the regulator", kAsEffect, shared::kCode},
@@ -75,10 +76,10 @@ struct Model {
       lower_limit({"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue,
                    "minimum field voltage at rated terminal voltage"}),
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "upper ceiling's drop by field current"},
-      {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
+      {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "gain of the rate feedback"},
       {"TF", "TF", "s", 1.0, 0.0, 20.0, kNoNullValue, "rate feedback's time constant"},
       {"KLR", "KLR", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the field-current limiter", kNone},
-      {"ILR", "ILR", "pu", 4.4, 0.0, 100.0, kNoNullValue, "field current at which it begins",
+      {"ILR", "ILR", "pu", 4.4, 0.0, 100.0, kNoNullValue, "field current at which the limiter begins",
        literature::openipsl("ESST1A, defaults")}};
   static constexpr int dyr_columns[] = {UEL, VOS,   TR,    VIMAX, VIMIN, TC, TB, TC1, TB1, KA,
                                         TA,  VAMAX, VAMIN, VRMAX, VRMIN, KC, KF, TF,  KLR, ILR};

@@ -100,8 +100,9 @@ struct Model : shared::AlternatorRectifier<Model> {
       return limit;
     const double most = value_of(p[KL] * (p[VLR] - Vfe));
     if (value_of(inner) > most)
-      return fmt::format("{:.4f} pu is needed before KB and the limiter allows KL (VLR - Vfe) = {:.4f} pu",
-                         value_of(inner), most);
+      return fmt::format(
+          "the operating point needs {:.4f} pu before KB, above the limiter's KL (VLR - Vfe) = {:.4f} pu",
+          value_of(inner), most);
     x[regulator] = inner + p[KH] * Vfe;
     x[leadlag] = x[regulator] / p[KA];
     c[Vref] = x[leadlag] + s.Vc - s.Vs - s.Vlimiter;

@@ -43,7 +43,7 @@ struct Model : shared::DcBehindLeadLag<Model> {
           {"VRMIN", "VRMIN", "pu", -7.3, -100.0, 0.0, kNoNullValue, "lower limit of Vr at rated voltage"}),
       kKE,
       kTE,
-      {"KF", "KF", "pu", 0.08, 0.0, 1.0, 0.0, "rate feedback",
+      {"KF", "KF", "pu", 0.08, 0.0, 1.0, 0.0, "gain of the rate feedback",
        literature::own("among the case files' 0.05 to 0.10")},
       kTF,
       kSwitch,

@@ -75,7 +75,7 @@ struct Model {
       upper_limit({"VRMAX", "VRMAX", "pu", 1.0, 0.0, 1000.0, kNoNullValue, "upper limit of the regulator"}),
       lower_limit(
           {"VRMIN", "VRMIN", "pu", -0.87, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator"}),
-      {"KF", "KF", "pu", 0.0, 0.0, 10.0, 0.0, "rate feedback"},
+      {"KF", "KF", "pu", 0.0, 0.0, 10.0, 0.0, "gain of the rate feedback"},
       {"TF1", "TF1", "s", 1.0, 0.0, 20.0, kNoNullValue, "first time constant of the rate feedback", kUsed},
       {"TF2", "TF2", "s", 0.0, 0.0, 20.0, kNoNullValue,
        "second time constant of the rate feedback (0: none)"},
@@ -84,11 +84,11 @@ struct Model {
       {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "self-excitation constant", kUsed},
       {"TE", "TE", "s", 0.0, 0.0, 5.0, kNoNullValue, "exciter's time constant (0: no exciter)"},
       {"E1", "E1", "pu", 0.0, 0.0, 50.0, kNoNullValue, "first point of saturation"},
-      {"SE1", "SE(E1)", "-", 0.0, 0.0, 2.0, 0.0, "saturation there"},
+      {"SE1", "SE(E1)", "-", 0.0, 0.0, 2.0, 0.0, "saturation factor at E1"},
       {"E2", "E2", "pu", 0.0, 0.0, 50.0, kNoNullValue, "second point of saturation"},
-      {"SE2", "SE(E2)", "-", 0.0, 0.0, 2.0, 0.0, "saturation there"},
-      {"KP", "KP", "pu", 6.5, 0.0, 100.0, kNoNullValue, "source, from voltage"},
-      {"KI", "KI", "pu", 0.0, 0.0, 100.0, 0.0, "source, from current"},
+      {"SE2", "SE(E2)", "-", 0.0, 0.0, 2.0, 0.0, "saturation factor at E2"},
+      {"KP", "KP", "pu", 6.5, 0.0, 100.0, kNoNullValue, "gain of the source from voltage"},
+      {"KI", "KI", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the source from current"},
       {"KC", "KC", "pu", 0.08, 0.0, 10.0, 0.0, "rectifier's commutating reactance"}};
   static constexpr int dyr_columns[] = {TR,  KA,     TA1,    VR1, VR2, TA2, TA3, TA4, VRMAX, VRMIN, KF, TF1,
                                         TF2, EFDMAX, EFDMIN, KE,  TE,  E1,  SE1, E2,  SE2,   KP,    KI, KC};

@@ -40,8 +40,8 @@ struct Model {
       lower_limit({"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue,
                    "minimum field voltage at rated terminal voltage",
                    literature::own("a bridge inverts slightly less than it rectifies")}),
-      {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "ceilings' drop by field current"},
-      {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "rate feedback"},
+      {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "drop of the ceilings per field current"},
+      {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "gain of the rate feedback"},
       {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"}};
   static constexpr int dyr_columns[] = {TR, VIMAX, VIMIN, TC, TB, KA, TA, VRMAX, VRMIN, KC, KF, TF};
   enum C { iTR, vimax, vimin, lead, iTB, gain, iTA, vrmax, vrmin, drop, feedback, iTF, Vref, coefficients };

@@ -44,10 +44,10 @@ struct Model {
       upper_limit({"VRMAX", "VRMAX", "pu", 1.2, 0.0, 100.0, kNoNullValue, "upper limit of Vr"}),
       lower_limit({"VRMIN", "VRMIN", "pu", -1.2, -100.0, 0.0, kNoNullValue, "lower limit of Vr"}),
       {"TE", "TE", "s", 0.5, 0.01, 10.0, kNoNullValue, "exciter time constant"},
-      {"KF", "KF", "pu", 0.02, 0.0, 1.0, 0.0, "rate feedback"},
+      {"KF", "KF", "pu", 0.02, 0.0, 1.0, 0.0, "gain of the rate feedback"},
       {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"},
-      {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNullValue, "source, from voltage"},
-      {"KI", "KI", "pu", 1.86, 0.0, 100.0, 0.0, "source, from current"},
+      {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNullValue, "gain of the source from voltage"},
+      {"KI", "KI", "pu", 1.86, 0.0, 100.0, 0.0, "gain of the source from current"},
       upper_limit(
           {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNullValue, "upper limit of the field supply"}),
       {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "self-excitation constant"}};

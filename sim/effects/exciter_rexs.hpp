@@ -93,7 +93,7 @@ struct Model : shared::Alternator<Model> {
       upper_limit({"VRMAX", "VRMAX", "pu", 47.0, 0.0, 1000.0, kNoNullValue, "upper limit of the regulator"}),
       lower_limit(
           {"VRMIN", "VRMIN", "pu", -20.0, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator"}),
-      {"KF", "KF", "pu", 0.05, 0.0, 1.0, 0.0, "rate feedback"},
+      {"KF", "KF", "pu", 0.05, 0.0, 1.0, 0.0, "gain of the rate feedback"},
       {"TF", "TF", "s", 1.0, 0.0, 20.0, kNoNullValue, "rate feedback's time constant"},
       {"TF1", "TF1", "s", 0.0, 0.0, 20.0, kNoNullValue, "rate feedback's lead"},
       {"TF2", "TF2", "s", 0.0, 0.0, 20.0, kNoNullValue, "rate feedback's lag (0: bypass)"},
@@ -113,9 +113,9 @@ struct Model : shared::Alternator<Model> {
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "rectifier's commutating reactance"},
       {"KD", "KD", "pu", 2.0, 0.0, 5.0, 0.0, "alternator's armature reaction"},
       {"E1", "E1", "pu", 3.0, 0.0, 50.0, kNoNullValue, "first point of saturation"},
-      {"SE1", "SE(E1)", "-", 0.0001, 0.0, 2.0, 0.0, "saturation there"},
+      {"SE1", "SE(E1)", "-", 0.0001, 0.0, 2.0, 0.0, "saturation factor at E1"},
       {"E2", "E2", "pu", 4.0, 0.0, 50.0, kNoNullValue, "second point of saturation"},
-      {"SE2", "SE(E2)", "-", 0.001, 0.0, 2.0, 0.0, "saturation there"},
+      {"SE2", "SE(E2)", "-", 0.001, 0.0, 2.0, 0.0, "saturation factor at E2"},
       {"FLIMF", "FLIMF", "-", 0.0, 0.0, 1.0, 0.0, "dependence of the limits on V", kAsEffect,
        shared::kShare}};
   static constexpr auto dyr_columns = shared::columns_to<FLIMF>();
@@ -210,8 +210,8 @@ struct Model : shared::Alternator<Model> {
     return std::abs(field - 1.0) < 0.01
                ? ""
                : fmt::format(
-                     "REXSYS: its limits are taken in pu; by OpenIPSL, PSS/E multiplies them by KE + KD "
-                     "+ SE, here {:g} and more",
+                     "the limits of REXSYS are taken in pu; according to OpenIPSL, PSS/E multiplies them by "
+                     "KE + KD + SE, here at least {:g}",
                      field);
   }
 
@@ -285,8 +285,8 @@ struct Model : shared::Alternator<Model> {
     x[xv] = select(outer_integrates, x[Vr], zero);
     const T e = select(outer_integrates, zero, x[Vr] / select(outer_integrates, one, p[KVP]));
     if (value_of(e) > value_of(p[VIMAX]) || value_of(e) < -value_of(p[VIMAX]))
-      return fmt::format("an error of {:.4f} pu is needed and VIMAX is {:g} pu", value_of(e),
-                         value_of(p[VIMAX]));
+      return fmt::format("the operating point needs an error of {:.4f} pu, beyond VIMAX = {:g} pu",
+                         value_of(e), value_of(p[VIMAX]));
     x[rate] = c[of_regulator] * x[Vr] + c[of_current] * Vfe + c[of_voltage] * s.Efd;
     x[rate_lag] = zero;
     c[Vref] = e + s.Vc - s.Vs - s.Vlimiter;

@@ -88,8 +88,9 @@ struct Model {
     constexpr double kLimitRounding = 1e-9;
     c[ambient] = select(p[AT] < s.Tm, s.Tm, p[AT]);
     if (value_of(s.Tm) > value_of(p[AT]) + kLimitRounding)
-      return fmt::format("it would need {:.4g} pu of power, above its temperature limit AT = {:.4g} pu",
-                         value_of(s.Tm), value_of(p[AT]));
+      return fmt::format(
+          "the operating point needs {:.4g} pu of power, above the temperature limit AT = {:.4g} pu",
+          value_of(s.Tm), value_of(p[AT]));
     x[fuel] = x[flow] = x[exhaust] = c[Pref] = s.Tm;
     return {};
   }

@@ -288,14 +288,16 @@ struct Model {
     const T pe = s.P * c[base], fuel = (s.Tm * c[base] + c[loss]) / c[kturb] + c[wfnl];
     const double stroke = value_of(fuel);
     const auto refuse = [&](const char* what, double bound) {
-      return fmt::format("it would need a stroke of {:.4g} pu, {} = {:.4g} pu", stroke, what, bound);
+      return fmt::format("the operating point needs a stroke of {:.4g} pu, {} = {:.4g} pu", stroke, what,
+                         bound);
     };
     if (stroke > value_of(p[Vmax])) return refuse("above Vmax", value_of(p[Vmax]));
     if (stroke < value_of(p[Vmin])) return refuse("below Vmin", value_of(p[Vmin]));
     if (stroke > kFullLoad) return refuse("above the load limiter's largest output", kFullLoad);
     if (stroke > value_of(c[limit]))
-      return fmt::format("it would need {:.4g} pu of power, above its load limit Ldref = {:.4g} pu",
-                         value_of(s.Tm * c[base] + c[loss]), value_of(p[Ldref]));
+      return fmt::format(
+          "the operating point needs {:.4g} pu of power, above the load limit Ldref = {:.4g} pu",
+          value_of(s.Tm * c[base] + c[loss]), value_of(p[Ldref]));
     c[Pmwset] = x[power] = pe;
     x[mw] = x[rate] = x[swing] = T(0.0);
     x[integral] = x[heat] = x[exhaust] = x[valve] = fuel;

@@ -24,7 +24,7 @@ struct Model {
   using Servo = shared::GateServo<Model>;
   static constexpr std::string_view
       name = "HYG3",
-      title = "hydro turbine and PID or double derivative governor, WECC's",
+      title = "hydro turbine and PID or double derivative governor (WECC)",
       source =
           "CIM GovHydro3; InterPSS PsseHyg3Governor (github.com/InterPSS-Project/ipss-plugin, 8fa57f2): "
           "blocks, limits, columns, ends of the curve; PowerWorld's help, HYG3; PSS/E HYG3U1",
@@ -272,8 +272,9 @@ struct Model {
     x[flow] = c[base] * s.Tm / (p[AT] * p[H0]) + p[QNL];
     const T pgv = x[flow] / c[root];
     if (value_of(pgv) < kShut)
-      return fmt::format("it would need a flow of {:.4g} pu, and a gate with less than {:g} pu is shut",
-                         value_of(x[flow]), kShut);
+      return fmt::format(
+          "the operating point needs a flow of {:.4g} pu, but a gate with less than {:g} pu is shut",
+          value_of(x[flow]), kShut);
     x[gate] = x[position] = Curve::opening(c + curve, pgv);
     x[velocity] = x[second] = T(0.0);
     x[measured] = c[base] * s.P;

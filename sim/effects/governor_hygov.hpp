@@ -97,7 +97,7 @@ struct Model {
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     x[flow] = s.Tm / p[At] + p[qNL];
     if (value_of(x[flow]) < kLeak)
-      return fmt::format("it would need a gate of {:.4g} pu, and a gate below {:g} pu is shut",
+      return fmt::format("the operating point needs a gate of {:.4g} pu, but a gate below {:g} pu is shut",
                          value_of(x[flow]), kLeak);
     x[gate] = x[desired] = x[flow];
     x[filter] = T(0.0);

@@ -39,7 +39,8 @@ struct Model {
       {"K1", "K1", "pu", 20.0, 0.0, 200.0, 0.0, "gain, the reciprocal of droop",
        literature::own("5 % droop")},
       {"K2", "K2", "-", 0.7, -3.0, 3.0, kNoNullValue, "fraction that passes the reheater", kSteam},
-      {"K3", "K3", "-", 0.43, -3.0, 3.0, kNoNullValue, "fraction of it that passes the crossover", kSteam},
+      {"K3", "K3", "-", 0.43, -3.0, 3.0, kNoNullValue,
+       "fraction of the reheater's flow that passes the crossover", kSteam},
       upper_limit({"PMAX", "PMAX", "pu", 1.0, 0.1, 10.0, kNoNullValue, "upper limit of power",
                    literature::own("rated")}),
       lower_limit({"PMIN", "PMIN", "pu", 0.0, -10.0, 1.0, kNoNullValue, "lower limit of power"}),
@@ -101,8 +102,9 @@ struct Model {
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     const double now = value_of(s.Tm);
     if (now > value_of(p[PMAX]) || now < value_of(p[PMIN]))
-      return fmt::format("it would need {:.4g} pu of power and PMIN, PMAX are {:g}, {:g} pu", now,
-                         value_of(p[PMIN]), value_of(p[PMAX]));
+      return fmt::format(
+          "the operating point needs {:.4g} pu of power, outside PMIN to PMAX = {:g} to {:g} pu", now,
+          value_of(p[PMIN]), value_of(p[PMAX]));
     x[controller] = x[governor] = T(0.0);
     c[Pref] = x[inlet] = s.Tm;
     x[reheat] = p[K2] * s.Tm;

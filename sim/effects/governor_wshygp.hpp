@@ -18,7 +18,7 @@ struct Model {
   using Servo = shared::GateServo<Model>;
   static constexpr std::string_view
       name = "WSHYGP",
-      title = "hydro turbine and PID governor, WECC's",
+      title = "hydro turbine and PID governor (WECC)",
       source =
           "CIM GovHydroPID; GridPACK wshygp (github.com/GridOPTICS/GridPACK): blocks, columns; OPAL-RT's "
           "Modelica library (karlbenoit-at-opal/modelica-ephasor-components), WSHYGP: backlash, limits, "

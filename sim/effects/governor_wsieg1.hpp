@@ -12,7 +12,7 @@ struct Model {
   using Curve = shared::GatePower<5>;
   static constexpr std::string_view
       name = "WSIEG1",
-      title = "steam turbine with reheat stages and governor, WECC's",
+      title = "steam turbine with reheat stages and governor (WECC)",
       source = "PSS/E WSIEG1; IEEE PES-TR1 (2013), 2.3; backlash and limits: OpenIPSL, WSIEG1",
       dyr_name = "WSIEG1";
   static constexpr Slot slot = Slot::governor;

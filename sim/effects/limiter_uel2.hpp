@@ -89,33 +89,27 @@ struct Model {
       {"TU3", "TU3", "s", 0.0, 0.0, 20.0, kNoNullValue, "second lead"},
       {"TU4", "TU4", "s", 0.0, 0.0, 20.0, kNoNullValue, "second lag (0: bypass)"},
       {"P0", "P0", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 0"},
-      lower_limit({"Q0", "Q0", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
+      lower_limit({"Q0", "Q0", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at P0"}),
       {"P1", "P1", "pu", 0.3, -2.0, 2.0, kNoNullValue, "power of point 1"},
-      lower_limit({"Q1", "Q1", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
+      lower_limit({"Q1", "Q1", "pu", -0.31, -2.0, 2.0, kNoNullValue, "least reactive power at P1"}),
       {"P2", "P2", "pu", 0.6, -2.0, 2.0, kNoNullValue, "power of point 2"},
-      lower_limit({"Q2", "Q2", "pu", -0.28, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
+      lower_limit({"Q2", "Q2", "pu", -0.28, -2.0, 2.0, kNoNullValue, "least reactive power at P2"}),
       {"P3", "P3", "pu", 0.9, -2.0, 2.0, kNoNullValue, "power of point 3"},
-      lower_limit({"Q3", "Q3", "pu", -0.21, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
+      lower_limit({"Q3", "Q3", "pu", -0.21, -2.0, 2.0, kNoNullValue, "least reactive power at P3"}),
       {"P4", "P4", "pu", 1.02, -2.0, 2.0, kNoNullValue, "power of point 4"},
-      lower_limit({"Q4", "Q4", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point"}),
+      lower_limit({"Q4", "Q4", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at P4"}),
       {"P5", "P5", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 5", kUnused},
-      lower_limit(
-          {"Q5", "Q5", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
+      lower_limit({"Q5", "Q5", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at P5", kUnused}),
       {"P6", "P6", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 6", kUnused},
-      lower_limit(
-          {"Q6", "Q6", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
+      lower_limit({"Q6", "Q6", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at P6", kUnused}),
       {"P7", "P7", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 7", kUnused},
-      lower_limit(
-          {"Q7", "Q7", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
+      lower_limit({"Q7", "Q7", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at P7", kUnused}),
       {"P8", "P8", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 8", kUnused},
-      lower_limit(
-          {"Q8", "Q8", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
+      lower_limit({"Q8", "Q8", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at P8", kUnused}),
       {"P9", "P9", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 9", kUnused},
-      lower_limit(
-          {"Q9", "Q9", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
+      lower_limit({"Q9", "Q9", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at P9", kUnused}),
       {"P10", "P10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "power of point 10", kUnused},
-      lower_limit(
-          {"Q10", "Q10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at that point", kUnused}),
+      lower_limit({"Q10", "Q10", "pu", 0.0, -2.0, 2.0, kNoNullValue, "least reactive power at P10", kUnused}),
       upper_limit({"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the output"}),
       lower_limit(
           {"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the output (only 0)"})};

@@ -36,10 +36,11 @@ struct Model {
   V --> [ (1 + s Tc1)/(1 + s Tb1) ] --> Vm        V: of the regulated bus; Vt: at the compensator
   Vref - Vm - Xc1 Vt B --> [ dead-band ] --> [ Vemin to Vemax ] --> [ (1 + s Tc2)/(1 + s Tb2) ]
       --> [ Kpv + Kiv/s, Bmin to Btop ] --> [ 1/(1 + s T2) ] --> B        Q = B Vt^2
-  dead-band: 0 until the error exceeds Vdbd1; then the error, until it has been within Vdbd2 for Tdbd
+  dead-band: output 0 until |error| exceeds Vdbd1; then the error, until |error| has stayed within Vdbd2 for Tdbd
   Btop = Bshrt; Bmax after the request has exceeded it for Tshrt, as long as it does; at most UVSBmax after V has
       been below UV1 for UVtm1, and for PLLdelay after that
-  B = 0 permanently after V was below UVT for UVtm2, above OV1 for OVtm1 or above OV2 for OVtm2
+  The device trips (B = 0 permanently) after V has been below UVT for UVtm2, above OV1 for OVtm1
+      or above OV2 for OVtm2
   Susceptances on the system's base. P of the load that it models is a conductance P/Vt^2.
   Not modelled, with a remark if a record requests it: switching of mechanically switched shunts (Flag1); a slope in
   three parts (Flag2), which is Xc1 everywhere; the slow susceptance regulator (Kps, Kis); the immediate action

@@ -34,7 +34,7 @@ struct Model {
        shared::kDamping},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", shared::kNeglected},
       {"Xdp", "X'd", "pu", 0.3, 1e-6, 2.5, kNoNullValue, "transient reactance", kAsEffect,
-       literature::own("an infinite bus has hardly any")}};
+       literature::own("nearly 0 for an infinite bus")}};
   enum X { delta, speed };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
                                      {"speed", "pu", "speed deviation", 100.0}};

@@ -15,7 +15,7 @@ struct Model {
   using J = machine_gentpj::Model;
   static constexpr std::string_view
       name = "GENQEC",
-      title = "synchronous machine, all inductances saturate alike, corrected field current",
+      title = "synchronous machine, equal saturation of all inductances, corrected field current",
       source =
           "WECC, GENQEC generator dynamic model specification, as in PowerSystems.jl (GENQEC) and InterPSS "
           "(GenqecMachine, github.com/InterPSS-Project/ipss-plugin: equations, columns); PSS/E GENQEC",

@@ -36,7 +36,7 @@ struct Model {
     for (const P i : {relative, V, I, angle, frequency})
       if (!(p[i] >= 0))
         problems.add(fmt::format("{} = {:g} {}", parameters[i].name, p[i], parameters[i].unit), where,
-                     "it is a standard deviation", "give 0 or more");
+                     "a standard deviation cannot be negative", "give 0 or more");
   }
 
   /// Random-number streams, separate so that one kind of noise does not affect the others.

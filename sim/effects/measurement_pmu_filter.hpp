@@ -44,7 +44,7 @@ struct Model {
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto either = [&](P i) {
       if (p[i] != 0.0 && p[i] != 1.0)
-        problems.add(fmt::format("{} = {:g}", parameters[i].name, p[i]), where, "it is a choice",
+        problems.add(fmt::format("{} = {:g}", parameters[i].name, p[i]), where, "only 0 and 1 are defined",
                      "give 0 or 1");
     };
     either(klass);

@@ -32,7 +32,7 @@ struct Model {
     for (const P i : {V, I, angle, frequency})
       if (!(p[i] >= 0))
         problems.add(fmt::format("{} = {:g} {}", parameters[i].name, p[i], parameters[i].unit), where,
-                     "it is a step", "give 0 or more");
+                     "a step cannot be negative", "give 0 or more");
   }
 
   static double nearest(double value, double step) {

@@ -39,11 +39,11 @@ struct Model {
       {"duration", "Tr", "s", 2.0, 0.0, 1e5, kNoNullValue, "duration of a move (0: a step)",
        literature::own("half of the interval"), shared::kAnyTime},
       {"move1", "dP1", "pu", 0.0, -1.0, 1.0, 0.0, "first move of the governor's reference"},
-      {"move2", "dP2", "pu", 0.0, -1.0, 1.0, 0.0, "second move, on top"},
-      {"move3", "dP3", "pu", 0.0, -1.0, 1.0, 0.0, "third move, on top"},
-      {"move4", "dP4", "pu", 0.0, -1.0, 1.0, 0.0, "fourth move, on top"},
-      {"move5", "dP5", "pu", 0.0, -1.0, 1.0, 0.0, "fifth move, on top"},
-      {"move6", "dP6", "pu", 0.0, -1.0, 1.0, 0.0, "sixth move, on top"}};
+      {"move2", "dP2", "pu", 0.0, -1.0, 1.0, 0.0, "second move, added to the first"},
+      {"move3", "dP3", "pu", 0.0, -1.0, 1.0, 0.0, "third move, added to the earlier ones"},
+      {"move4", "dP4", "pu", 0.0, -1.0, 1.0, 0.0, "fourth move, added to the earlier ones"},
+      {"move5", "dP5", "pu", 0.0, -1.0, 1.0, 0.0, "fifth move, added to the earlier ones"},
+      {"move6", "dP6", "pu", 0.0, -1.0, 1.0, 0.0, "sixth move, added to the earlier ones"}};
   enum C { coefficients = move6 + 1 };
 
   static void check(const double* p, const std::string& where, Problems& problems) {

@@ -12,7 +12,7 @@ namespace swingbank::sim::effects::setpoint_lcfb1 {
 struct Model {
   static constexpr std::string_view
       name = "LCFB1",
-      title = "turbine load controller, WECC's",
+      title = "turbine load controller (WECC)",
       source =
           "CIM TurbLCFB1; InterPSS Lcfb1PrefController (github.com/InterPSS-Project/ipss-plugin, 2572ba7): "
           "blocks, columns; PSS/E LCFB1",

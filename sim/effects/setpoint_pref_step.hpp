@@ -11,7 +11,7 @@ struct Model : shared::SetpointStep<Model> {
             amount |       ______
   dPref :         0 |______|      |______
                           t1     t2
-  Before t1 and from t2 on exactly zero.
+  Exactly zero before t1 and from t2 on.
 )";
   static constexpr Source bounds_from = shared::kRating;
   static constexpr Parameter parameters[] = {

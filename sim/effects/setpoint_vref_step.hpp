@@ -10,7 +10,7 @@ struct Model : shared::SetpointStep<Model> {
             amount |       ______
   dVref :         0 |______|      |______
                           t1     t2
-  Before t1 and from t2 on exactly zero.
+  Exactly zero before t1 and from t2 on.
 )";
   static constexpr Source bounds_from = literature::own("half of the rated voltage");
   static constexpr Parameter parameters[] = {

@@ -23,7 +23,7 @@ struct Model {
   g(t):   |       /      \____
         0 |______/            \_________
              start  +closing  +hold  +opening
-  Before `start` exactly nothing is changed.
+  The torque is unchanged before `start`.
 )";
   enum P { drop, start, closing, hold, opening };
   static constexpr Source defaults_from = shared::kNothing;

@@ -37,7 +37,7 @@ struct Model {
   static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {
       {"drop", "k", "-", 0.3, 0.0, 1.0, 0.0, "fraction of the torque removed by the valves",
-       literature::own("some"), shared::kShare},
+       literature::own("30 % of the torque, a visible effect"), shared::kShare},
       {"dip", "dV", "pu", 0.1, 1e-3, 2.0, kNoNullValue, "voltage dip that triggers the valves",
        literature::own("more than a load step causes"), literature::own("from noise to more than V")},
       {"delay", "t1", "s", 0.1, 0.0, 1e5, kNoNullValue,
@@ -51,7 +51,7 @@ struct Model {
   enum C { begins = opening + 1, level, coefficients };
   enum X { set, since };
   static constexpr State states[] = {{"set", "-", "1 after the detection of a fault", 1.0},
-                                     {"since", "s", "time since then", 1.0}};
+                                     {"since", "s", "time since the detection", 1.0}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     for (const P i : {dip, closing, opening})

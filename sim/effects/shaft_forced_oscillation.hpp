@@ -17,7 +17,7 @@ struct Model {
   static constexpr Slot slot = Slot::shaft;
   static constexpr std::string_view description = R"(
   Tm = Tm(governor) + amplitude sin(2 pi frequency (t - start) + phase)      start <= t < end
-  Before `start` and from `end` on exactly nothing is added.
+  The torque is unchanged before `start` and from `end` on.
 )";
   enum P { amplitude, frequency, phase, start, end };
   static constexpr Source defaults_from = shared::kNothing;

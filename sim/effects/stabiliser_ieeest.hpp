@@ -23,9 +23,9 @@ struct Model {
   u -> ------------------------------- -> -------- - -------- KS -------- -> [LSMIN, LSMAX] -> Vs
        (1+A1 s+A2 s^2)(1+A3 s+A4 s^2)    1 + s T2   1 + s T4     1 + s T6
   u: speed deviation (ICS = 1), frequency deviation of the terminal (2), electrical power on the machine's
-     base (3), accelerating power Pm - P (4), voltage V (5), its slope (6).
+     base (3), accelerating power Pm - P (4), voltage V (5), its derivative (6).
      Frequency from the voltage and the lagged voltage x = V/(1 + s Tf): Im(V conj x)/(|V| |x|)/(2 pi f0 Tf);
-     slope s V/(1 + s Tf).
+     derivative s V/(1 + s Tf).
   Vs = 0 while Vc > VCU or Vc < VCL (a zero switches that side off). T2, T4 = 0: bypass; T6 = 0: KS alone.
 )";
   enum P { ICS, IB, A1, A2, A3, A4, A5, A6, T1, T2, T3, T4, T5, T6, KS, LSMAX, LSMIN, VCU, VCL, Tf };
@@ -35,8 +35,8 @@ struct Model {
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"ICS", "ICS", "code", 1.0, 1.0, 6.0, kNoNullValue,
-       "input: 1 speed, 2 frequency, 3 electrical, 4 accelerating power, 5 voltage, 6 its slope", kCase,
-       literature::sienna("IEEEST")},
+       "input: 1 speed, 2 frequency, 3 electrical, 4 accelerating power, 5 voltage, 6 derivative of the voltage",
+       kCase, literature::sienna("IEEEST")},
       {"IB", "IB", "code", 0.0, 0.0, 999997.0, kNoNullValue, "remote bus (0: the machine's own)", kCase,
        shared::kBusNumber},
       {"A1", "A1", "s", 0.06, 0.0, 10.0, 0.0, "filter denominator 1, first order",
@@ -108,7 +108,7 @@ struct Model {
        .weighed_by = sharp},
       {.name = "ydot",
        .unit = "pu/s",
-       .meaning = "its slope",
+       .meaning = "derivative of y",
        .weight = 0.05,
        .moved_by = {ia2},
        .weighed_by = sharp},
@@ -119,7 +119,7 @@ struct Model {
        .weighed_by = sharp},
       {.name = "wdot",
        .unit = "pu/s",
-       .meaning = "its slope",
+       .meaning = "derivative of w",
        .weight = 0.05,
        .moved_by = {ia4},
        .weighed_by = sharp},

@@ -24,7 +24,7 @@ struct Model {
       {"K2", "K2", "pu", 1.0, 0.0, 100.0, kNoNullValue, "gain of each washout"},
       {"T2", "T2", "s", 4.0, 0.01, 100.0, kNoNullValue, "time constant of each washout"},
       {"K3", "K3", "pu", 0.7, 0.0, 100.0, 0.0, "gain of the lagged path"},
-      {"T3", "T3", "s", 2.0, 0.01, 100.0, kNoNullValue, "its time constant (0: none)"},
+      {"T3", "T3", "s", 2.0, 0.01, 100.0, kNoNullValue, "time constant of the lagged path (0: none)"},
       {"K4", "K4", "pu", 0.1, -100.0, 100.0, 0.0, "gain of the direct path"},
       {"K5", "K5", "pu", 1.0, 0.0, 100.0, 0.0, "gain of each output lag"},
       {"T5", "T5", "s", 0.01, 0.0, 10.0, kNoNullValue, "time constant of each output lag (0: none)"},
@@ -35,7 +35,7 @@ struct Model {
   static constexpr State states[] = {{"wash1", "pu", "state of the first washout", 1.0, -1, -1, {iT2}},
                                      {"wash2", "pu", "state of the second washout", 1.0, -1, -1, {iT2}},
                                      {"wash3", "pu", "state of the third washout", 1.0, -1, -1, {iT2}},
-                                     {"slow", "pu", "lagged way", 1.0, -1, -1, {iT3}},
+                                     {"slow", "pu", "state of the lagged path", 1.0, -1, -1, {iT3}},
                                      {"out1", "pu", "first output lag", 1.0, -1, -1, {iT5}},
                                      {"out2", "pu", "second output lag", 1.0, -1, -1, {iT5}}};
 

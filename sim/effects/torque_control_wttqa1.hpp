@@ -33,13 +33,13 @@ struct Model {
       upper_limit({"Temax", "Temax", "pu", 1.2, 0.0, 99.0, kNoNullValue, "largest torque"}),
       lower_limit({"Temin", "Temin", "pu", 0.0, -1.0, 1.0, kNoNullValue, "smallest torque"}),
       {"p1", "p1", "pu", 0.2, -1.0, 2.0, kNoNullValue, "power of point 1"},
-      {"spd1", "spd1", "pu", 0.58, 0.1, 2.0, kNoNullValue, "speed there"},
+      {"spd1", "spd1", "pu", 0.58, 0.1, 2.0, kNoNullValue, "speed at p1"},
       {"p2", "p2", "pu", 0.4, 0.0, 2.0, kNoNullValue, "power of point 2"},
-      {"spd2", "spd2", "pu", 0.72, 0.1, 2.0, kNoNullValue, "speed there"},
+      {"spd2", "spd2", "pu", 0.72, 0.1, 2.0, kNoNullValue, "speed at p2"},
       {"p3", "p3", "pu", 0.6, 0.0, 2.0, kNoNullValue, "power of point 3"},
-      {"spd3", "spd3", "pu", 0.86, 0.1, 2.0, kNoNullValue, "speed there"},
+      {"spd3", "spd3", "pu", 0.86, 0.1, 2.0, kNoNullValue, "speed at p3"},
       {"p4", "p4", "pu", 0.8, 0.0, 2.0, kNoNullValue, "power of point 4"},
-      {"spd4", "spd4", "pu", 1.0, 0.1, 2.0, kNoNullValue, "speed there"},
+      {"spd4", "spd4", "pu", 1.0, 0.1, 2.0, kNoNullValue, "speed at p4"},
       {"TRATE", "TRATE", "MW", 0.0, 0.0, 10000.0, kNoNullValue,
        "rating of the turbine (0: the converter's base)", kAsEffect,
        literature::own("larger than any plant")}};
@@ -109,8 +109,8 @@ struct Model {
     x[torque] = s.Pneed * c[base] / x[speed];
     c[pref] = s.Pneed = s.P;
     if (value_of(x[torque]) < value_of(c[least]) || value_of(x[torque]) > value_of(c[most]))
-      return fmt::format("it would need a torque of {:.4f} pu, outside {:g} to {:g} pu", value_of(x[torque]),
-                         value_of(c[least]), value_of(c[most]));
+      return fmt::format("the operating point needs a torque of {:.4f} pu, outside {:g} to {:g} pu",
+                         value_of(x[torque]), value_of(c[least]), value_of(c[most]));
     return {};
   }
 };

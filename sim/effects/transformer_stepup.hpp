@@ -23,7 +23,7 @@ struct Model {
       {"R", "R", "pu", 0.0, 0.0, 0.1, 0.0, "resistance on the machine's base"},
       {"X", "X", "pu", 0.1, 0.0, 1.0, 0.0, "leakage reactance on the machine's base",
        literature::own("a typical value")},
-      {"ratio", "n", "-", 1.0, 0.5, 2.0, 1.0, "grid side over machine side, off nominal"}};
+      {"ratio", "n", "-", 1.0, 0.5, 2.0, 1.0, "off-nominal ratio, grid side over machine side"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const auto refuse = [&](P i, bool wrong, const char* why, const char* remedy) {

@@ -101,7 +101,7 @@ class DydReader {
       // PSS/E's model of the same name may have other columns or another order of columns.
       out.faults.add(
           fmt::format("PSLF's model {}", name), where(line.number),
-          "its columns are not documented in public; readable are " + dyd_models_text(),
+          "its columns are not publicly documented; these models can be read: " + dyd_models_text(),
           "leave it out with --ignore-model (of one unit: --drop), or map it with --map-model (--replace) "
           "to a model with as many parameters");
       out_.dyr.records.push_back(std::move(out));
@@ -152,7 +152,7 @@ class DydReader {
                    std::size_t unnamed, Problems& faults) const {
     if (unnamed > 0 && !model.in_order) {
       faults.add(fmt::format("{} has values without names", model.dyd), where(line.number),
-                 "the order of its values is not documented in public", "write each value after its name");
+                 "the order of its values is not publicly documented", "write each value after its name");
       return;
     }
     if (unnamed > values.size())
@@ -252,7 +252,7 @@ class DydReader {
            DyrRecord& out) const {
     out.faults.add(
         fmt::format("{} = {:g} of {}", column.name, v, model.dyd), where(line.number),
-        fmt::format("{} has no counterpart", model.dyr),
+        fmt::format("{} has no such parameter", model.dyr),
         column.use == dyd::Use::off
             ? fmt::format("set it to {:g} if the feature is not needed, or leave the model out", column.off)
             : "widen it if the limit is not needed, or leave the model out");

@@ -34,7 +34,7 @@ double event_time(const std::string& text, double t_end, const std::string& wher
   const double t = number(text, where, problems);
   if (t > t_end)
     problems.add(fmt::format("an event at {:g} s in a run of {:g} s", t, t_end), where,
-                 "it is after the end of the run", "choose an earlier time or raise --t-end");
+                 "it is after the end of the run", "choose an earlier time or increase --t-end");
   return t;
 }
 
@@ -43,7 +43,8 @@ std::vector<std::string> fields(const std::string& text, std::size_t least, std:
                                 const std::string& form, const std::string& where, Problems& problems) {
   auto part = fields(text);
   if (part.size() >= least && part.size() <= most) return part;
-  problems.add(fmt::format("{} fields", part.size()), where, "the form is " + form, "give every field");
+  problems.add(fmt::format("{} fields in '{}'", part.size(), text), where, "the form is " + form,
+               "give every field");
   return {};
 }
 
@@ -121,7 +122,8 @@ network::BusFault read_fault(const std::string& text, const network::Network& ne
   const auto part = fields(text);
   if (part.size() != 3 && part.size() != 5) {
     problems.add(
-        fmt::format("{} fields", part.size()), where, "a fault is BUS:T_ON:T_OFF or BUS:T_ON:T_OFF:R:X",
+        fmt::format("{} fields in '{}'", part.size(), text), where,
+        "a fault is BUS:T_ON:T_OFF or BUS:T_ON:T_OFF:R:X",
         "give bus number, start [s], end [s] and, if it is not bolted, R and X [pu on the network's base]");
     return {-1, 0.0, 0.0};
   }
@@ -129,8 +131,9 @@ network::BusFault read_fault(const std::string& text, const network::Network& ne
                           number(part[2], where, problems)};
   if (part.size() == 5) fault.z = {number(part[3], where, problems), number(part[4], where, problems)};
   if (fault.t_off > t_end)
-    problems.add(fmt::format("fault to {} s in a run of {} s", fault.t_off, t_end), where,
-                 "the run ends before the fault does", "shorten the fault or raise --t-end");
+    problems.add(
+        fmt::format("a fault that ends at {:g} s, after the end of the run at {:g} s", fault.t_off, t_end),
+        where, "the run would not contain its clearing", "shorten the fault or increase --t-end");
   return fault;
 }
 
@@ -169,7 +172,7 @@ std::vector<network::LineTrip> read_line_trip(const std::string& text, const net
   if (part.size() > times + 1) close = number(part[times + 1], where, problems);
   if (std::max(open, close.value_or(0.0)) > t_end)
     problems.add(fmt::format("switching after the run's end at {} s", t_end), where,
-                 "the switching would be ignored", "choose earlier times or raise --t-end");
+                 "the switching would be ignored", "choose earlier times or increase --t-end");
   std::vector<network::LineTrip> trips;
   for (const int branch : branches) trips.push_back({branch, open, close});
   return trips;
@@ -178,7 +181,8 @@ std::vector<network::LineTrip> read_line_trip(const std::string& text, const net
 Complex read_impedance(const std::string& text, const std::string& where, Problems& problems) {
   const auto part = fields(text);
   if (part.size() == 2) return {number(part[0], where, problems), number(part[1], where, problems)};
-  problems.add(text, where, "the form is R:X", "give both, in pu on the network's base");
+  problems.add("'" + text + "' is not an impedance", where, "the form is R:X",
+               "give both, in pu on the network's base");
   return {};
 }
 

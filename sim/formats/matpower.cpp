@@ -33,7 +33,7 @@ class CaseReader {
   network::Network read() {
     if (!(network_.frequency > 0) || !std::isfinite(network_.frequency))
       problems_.add("a frequency of " + text_of(network_.frequency) + " Hz", file_,
-                    "a MATPOWER case has none of its own", "give 50 or 60 Hz");
+                    "a MATPOWER case contains no frequency", "give 50 or 60 Hz");
     version();
     base();
     table("bus", 13, &CaseReader::bus);
@@ -103,7 +103,7 @@ class CaseReader {
     const Assignment* a = require(name);
     if (!a) return;
     if (a->kind != Assignment::matrix || a->rows.empty()) {
-      problems_.add(name + " has no rows", where(*a), "the matrix has one row for each " + name,
+      problems_.add("mpc." + name + " has no rows", where(*a), "the matrix has one row for each " + name,
                     "give at least one row");
       return;
     }
@@ -256,7 +256,7 @@ network::Network read_network(const std::filesystem::path& file, const RawOption
   if (is_epc(file)) return read_epc(file, options);
   if (file.extension() == ".m") {
     if (!options.frequency_hz && options.needs_frequency)
-      throw InputError({"no frequency", file.string(), "a MATPOWER case has none of its own",
+      throw InputError({"no frequency", file.string(), "a MATPOWER case contains no frequency",
                         "give --frequency-hz (in a config: frequency_hz), 50 or 60 Hz"});
     return read_matpower(file, options.frequency_hz.value_or(1.0));
   }

@@ -115,7 +115,7 @@ void EpcReader::divide() {
     problems_.add("no sbase above 0 MVA in the solution parameters", file_,
                   "powers and admittances refer to it", "give the line 'sbase 100.0'");
   if (options_.needs_frequency && !(options_.frequency_hz.value_or(0) > 0))
-    problems_.add("no frequency", file_, "an .epc has none of its own",
+    problems_.add("no frequency", file_, "an .epc contains no frequency",
                   "give --frequency-hz (in a config: frequency_hz), 50 or 60 Hz");
   problems_.raise();  // the rest requires these values
   network_.base_mva = static_cast<double>(base_);

@@ -83,8 +83,9 @@ class DyrReader {
       write_out_repeats(piece.fields);
       if (is_end(piece, open.fields.empty())) {
         if (const int line = next_content(i + 1); line > 0)
-          problems_.add("records after the end of the file", name_ + ":" + std::to_string(line),
-                        "line " + std::to_string(i + 1) + " ends it", "remove that line, or what follows it");
+          problems_.add("records after the end mark", name_ + ":" + std::to_string(line),
+                        "line " + std::to_string(i + 1) + " (Q or 0) ends the file",
+                        "remove that line, or the records after it");
         break;
       }
       if (!open.fields.empty() && begins_record(piece)) {
@@ -228,11 +229,11 @@ void add_model_map(DyrOptions& options, const std::string& text, const std::stri
 DyrOptions read_dyr_options(Config& config, const std::string& prefix) {
   DyrOptions options;
   options.ignore = config.optional<std::vector<std::string>>(prefix + "ignore_models", {},
-                                                             {.meaning = "models of the .dyr to leave out"});
+                                                             {.meaning = "models of the .dyr to ignore"});
   const std::string key = prefix + "map_models";
   Problems problems;
   for (const auto& text : config.optional<std::vector<std::string>>(
-           key, {}, {.meaning = "FROM=TO: models of the .dyr to read as others"}))
+           key, {}, {.meaning = "FROM=TO: read model FROM of the .dyr as model TO"}))
     add_model_map(options, text, config.where(key), problems);
   for (const Problem& p : problems.list()) config.problem(key, p.what, p.why, p.remedy);
   return options;

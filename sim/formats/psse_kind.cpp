@@ -53,12 +53,12 @@ void refuse_exchanged(const std::filesystem::path& raw, const std::filesystem::p
          "with the header of a .raw",
          "exchange --raw and --dyr"});
   if (no_raw)
-    throw InputError({"no .raw", place(raw, *network),
+    throw InputError({"not a .raw file", place(raw, *network),
                       "the file begins with a record of a dynamic model, '" + network->fields[1].text +
                           "', as a .dyr does",
                       "give the network's file with --raw"});
   if (no_dyr)
-    throw InputError({"no .dyr", place(dyr, *dynamics), "the file begins with the header of a .raw",
+    throw InputError({"not a .dyr file", place(dyr, *dynamics), "the file begins with the header of a .raw",
                       "give the dynamic models' file with --dyr"});
 }
 
@@ -94,13 +94,13 @@ std::optional<Problem> other_version(const std::vector<std::string>& lines, cons
     best = version;
   }
   if (best == 0) return {};
-  return Problem{std::to_string(faults.size()) + " faults as version " + std::to_string(read_as), name,
-                 "as version " + std::to_string(best) + " it has " +
-                     (least == 0 ? std::string("none") : std::to_string(least)) +
-                     "; the first: " + faults[0].what + " at " + faults[0].where,
-                 options.version == read_as
-                     ? "give --raw-version " + std::to_string(best)
-                     : "correct REV in the header, in a copy, to " + std::to_string(best)};
+  return Problem{
+      std::to_string(faults.size()) + " errors when read as version " + std::to_string(read_as), name,
+      "read as version " + std::to_string(best) + " it has " +
+          (least == 0 ? std::string("none") : std::to_string(least)) +
+          "; the first error: " + faults[0].what + " at " + faults[0].where,
+      options.version == read_as ? "give --raw-version " + std::to_string(best)
+                                 : "correct REV in the header, in a copy, to " + std::to_string(best)};
 }
 
 }  // namespace psse

@@ -67,7 +67,7 @@ class Table {
               true};
     }
     if (value.is_number()) return {value.dump(), false};
-    wrong("row " + std::to_string(row + 1) + " contains values other than numbers and texts");
+    wrong("row " + std::to_string(row + 1) + " contains values other than numbers and strings");
     return {};
   }
   Record record(std::size_t row, const Names& names, const std::string& suffix = "") {
@@ -105,7 +105,7 @@ void RawReader::read_json() {
   const Json whole = Json::parse(text, nullptr, false);
   if (whole.is_discarded() || !whole.is_object() || !whole.contains("network") ||
       !whole["network"].is_object())
-    throw InputError({"no network", file_, "a .rawx is JSON with an object \"network\"",
+    throw InputError({"no object \"network\"", file_, "a .rawx is JSON with this object",
                       "save the case again; the file may be truncated"});
   const Json& net = whole["network"];
   Table head(net, "caseid", file_, problems_);

@@ -49,8 +49,8 @@ OperatingOf<T> load_operating_point(const Consumer& load, const std::vector<T>& 
   Problems problems;
   const std::string where = "load " + load.name;
   const auto refuse = [&](const std::string& why) {
-    problems.add(fmt::format("{} cannot hold P = {:.4f} pu, Q = {:.4f} pu at V = {:.4f} pu", effect.name,
-                             power.real(), power.imag(), std::abs(voltage)),
+    problems.add(fmt::format("{} has no steady state at P = {:.4f} pu, Q = {:.4f} pu, V = {:.4f} pu",
+                             effect.name, power.real(), power.imag(), std::abs(voltage)),
                  where, why, "change the model's parameters or the load");
   };
   if (const std::string why = effect.get<T>().load.steady(parameters.data(), o.c.data(), o.s, o.x.data());

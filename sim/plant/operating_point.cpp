@@ -125,10 +125,9 @@ class Initialiser {
   void add_problem(const std::string& why, const Place<T>& p) {
     if (why.empty()) return;
     const Signals<T>& s = o_.s;
-    problems_.add(
-        fmt::format("{} cannot hold the operating point P = {:.4f} pu, Q = {:.4f} pu, V = {:.4f} pu",
-                    p.effect->name, value_of(s.P), value_of(s.Q), value_of(s.V)),
-        where(), why, "change the model's parameters or the dispatch");
+    problems_.add(fmt::format("{} has no steady state at P = {:.4f} pu, Q = {:.4f} pu, V = {:.4f} pu",
+                              p.effect->name, value_of(s.P), value_of(s.Q), value_of(s.V)),
+                  where(), why, "change the model's parameters or the dispatch");
   }
   /// Checks that the voltage behind the impedance produces exactly the current of the power flow.
   void emf() {
@@ -179,14 +178,14 @@ class Initialiser {
     s.Tm = o_.Tm;
     s.t = T(-1.0);  // before any time-dependent action
     equations_.derivative(o_.c.data(), o_.x.data(), scratch_.data(), s, dx.data());
-    const auto off = [&](const char* signal, const T& is, const T& should) {
+    const auto off = [&](const char* signal, const char* models, const T& is, const T& should) {
       if (!(std::abs(value_of(is) - value_of(should)) < kTolerance))
         problems_.add(fmt::format("{} = {:.6g} pu", signal, value_of(is)), where(),
                       fmt::format("the machine needs {:.6g} pu at its operating point", value_of(should)),
-                      "check the limits of the model that outputs it");
+                      fmt::format("check the limits of the {}", models));
     };
-    off("Efd", s.Efd, o_.Efd);
-    off("Tm", s.Tm, o_.Tm);
+    off("Efd", "exciter or electrical control", s.Efd, o_.Efd);
+    off("Tm", "governor or electrical control", s.Tm, o_.Tm);
     for (const auto& p : places_)
       for (std::size_t k = 0; k < p.effect->states.size(); ++k)
         if (!(std::abs(value_of(dx[p.x + k])) < kTolerance))

@@ -41,7 +41,7 @@ std::string value_text(const Block& block, int parameter) {
 
 std::string usual_text(const Effect& effect, int parameter) {
   const Parameter& p = record_of(effect, parameter);
-  return with_unit(fmt::format("{}'s is usually {:g} to {:g}", effect.name, p.low, p.high), p.unit);
+  return with_unit(fmt::format("usual range of {}: {:g} to {:g}", effect.name, p.low, p.high), p.unit);
 }
 
 std::vector<std::string> unusual_texts(const Block& block, const std::string& where) {

@@ -13,10 +13,10 @@ namespace swingbank::sim::plant {
 std::vector<int> unusual(const Block& block);
 /// Returns "VMIN = -1.5 pu".
 std::string value_text(const Block& block, int parameter);
-/// Returns "TGOV1's is usually -1 to 1 pu".
+/// Returns "usual range of TGOV1: -1 to 1 pu".
 std::string usual_text(const Effect& effect, int parameter);
-/// Returns the unusual values of a block as sentences: "x.dyr:12: VMIN = -1.5 pu (TGOV1's is usually -1 to 1
-/// pu)".
+/// Returns the unusual values of a block as sentences: "x.dyr:12: VMIN = -1.5 pu (usual range of TGOV1: -1 to
+/// 1 pu)".
 std::vector<std::string> unusual_texts(const Block& block, const std::string& where);
 
 /// Interval in which a search may move a parameter.

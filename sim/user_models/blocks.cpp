@@ -148,8 +148,8 @@ std::vector<int> Reader::list(const std::string& key) {
     if (!tree) problem(place, fault.at, fault.what, fault.why, fault.remedy);
     vertices.push_back(tree ? lower(tree, place) : graph_.constant(1.0));
     if (!graph_[vertices.back()].fixed)
-      problem(place, 0, "a coefficient that moves", "a transfer function is linear and constant",
-              "use parameters only");
+      problem(place, 0, "a coefficient that varies during the run",
+              "a transfer function is linear and constant", "use parameters only");
   }
   return vertices;
 }

@@ -139,7 +139,8 @@ int Reader::look_up(const Node& n, const std::string& key) {
     const int index = signal_index(base);
     if (index >= 0 && base != "t") return operating_value(n, key, index, base);
   }
-  problem(key, n.at, "unknown name " + n.name, "nothing is called that", "use one of: " + names());
+  problem(key, n.at, "unknown name " + n.name, "no parameter, state, signal or block has this name",
+          "use one of: " + names());
   return graph_.constant(0.0);
 }
 
@@ -184,8 +185,8 @@ int Reader::named(const Node& n, const std::string& key, Named& entry) {
   own_ = own;
   entry.open = false;
   if (entry.kind == Named::Kind::reference && !graph_[vertex].fixed) {
-    problem(entry.expression.key, 0, "reference " + n.name + " that moves",
-            "a reference is fixed when a run begins",
+    problem(entry.expression.key, 0, "reference " + n.name + " varies during the run",
+            "a reference is computed once, before the run",
             "use parameters and values at the operating point (V0) only");
     return entry.vertex = graph_.constant(0.0);
   }

@@ -131,9 +131,9 @@ class Search {
   [[nodiscard]] std::string no_number(const Vector& rest) const {
     for (Index i = 0; i < states_; ++i)
       if (!std::isfinite(rest[i]))
-        return fmt::format("the derivative of {} is no number there",
+        return fmt::format("the derivative of {} is not a finite number at the operating point",
                            user_model_.states[static_cast<std::size_t>(i)].name);
-    return fmt::format("its {} is no number there", user_model_.output_name());
+    return fmt::format("its {} is not a finite number at the operating point", user_model_.output_name());
   }
   /// Returns true if a limit clamps the state against its derivative.
   [[nodiscard]] bool is_clamped(std::size_t i, double dx) const {
@@ -156,20 +156,20 @@ class Search {
     user_models::run<double, false>(user_model_.code.loop, c_, x_, s_, registers.data(), dx.data(), output);
     for (std::size_t i = 0; i < dx.size(); ++i)
       if (!(std::abs(dx[i]) < kTolerance) && !is_clamped(i, dx[i]))
-        return fmt::format("state {} does not come to rest: it moves at {:.4g} per second at {:.4g} {}",
+        return fmt::format("state {} has no steady state: it changes by {:.4g} per second at {:.4g} {}",
                            user_model_.states[i].name, dx[i], x_[i], user_model_.states[i].unit);
     const double asked = user_model_.must_meet() && user_model_.replaces
                              ? s_.*kMembers<double>[static_cast<std::size_t>(user_model_.output)]
                              : 0.0;
-    if (!std::isfinite(output)) return fmt::format("its {} is no number there", user_model_.output_name());
+    if (!std::isfinite(output))
+      return fmt::format("its {} is not a finite number at the operating point", user_model_.output_name());
     if (!user_model_.must_meet() || std::abs(output - asked) < kTolerance) return {};
     if (user_model_.replaces)
       return fmt::format(
-          "it gives {} = {:.6g} pu where the machine needs {:.6g} pu (a reference = \"solve\" would "
-          "meet it)",
+          "it gives {} = {:.6g} pu, but the machine needs {:.6g} pu; declare a reference = \"solve\"",
           user_model_.output_name(), output, asked);
     return fmt::format(
-        "it adds {:.6g} pu to {} where nothing has happened yet (subtract the value at the operating "
+        "it adds {:.6g} pu to {} in the steady state (subtract the value at the operating "
         "point, as in V - V0)",
         output, user_model_.output_name());
   }

@@ -112,7 +112,7 @@ void check(const void* data, const double* p, const std::string& where, Problems
   for (const Requirement& r : user_model.requirements) {
     const double a = value(r.left), b = value(r.right);
     if (!(r.op == Op::less ? a < b : a <= b))
-      problems.add(fmt::format("{} does not hold ({:g} against {:g})", r.text, a, b), where,
+      problems.add(fmt::format("{} is violated: {:g} and {:g}", r.text, a, b), where,
                    "user-defined model " + user_model.name + " requires it at " + r.where,
                    "change the parameters");
   }
@@ -174,7 +174,7 @@ const Effect& load_user_model(const std::string& text, const std::filesystem::pa
 }
 
 const Effect& load_user_model(const std::filesystem::path& file, library::EffectLibrary& library) {
-  return load_user_model(read_input(file, "no readable user-defined model", "give the path of its .toml"),
+  return load_user_model(read_input(file, "cannot read the user-defined model", "give the path of its .toml"),
                          file, library);
 }
 

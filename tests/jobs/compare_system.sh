@@ -84,7 +84,7 @@ refuses "no such terminal" "no plant '3x'" compare --system "$work/wrong.toml"
 changed_system 's|4:2:2.1|44:2:2.1|'
 refuses "no such bus" 'no bus 44' compare --system "$work/wrong.toml"
 changed_system 's|4:2:2.1|4:2:12|'
-refuses "an event after the records" 'fault to 12' compare --system "$work/wrong.toml"
+refuses "an event after the records" 'a fault that ends at 12' compare --system "$work/wrong.toml"
 changed_system 's|^base_mva|base_mwa|'
 refuses "a key that is misspelt" 'base_mwa' compare --system "$work/wrong.toml"
 misused "a plant beside a system" 'excludes' compare --system "$work/same.toml" --model m.toml --record e.csv

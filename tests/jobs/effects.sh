@@ -83,5 +83,5 @@ sexs = next(m for m in c["models"] if m["name"] == "SEXS")
 assert sexs["refused"] == 1 and "SEXS with 1 parameter" in sexs["fault"], sexs
 PYTHON
 refuses "no .dyr file" "none.dyr" "$swingbank" effects --coverage "$work/none.dyr"
-refuses "no file" "no readable user-defined model" "$swingbank" effects --user-model "$work/none.toml"
+refuses "no file" "cannot read the user-defined model" "$swingbank" effects --user-model "$work/none.toml"
 misused "unknown option" nonsense "$swingbank" effects --nonsense

@@ -71,7 +71,7 @@ refuses "fleet on ranks without MPI" 'diagnose-fleet.*install swingbank-train' e
 
 # A missing file is reported with the searched folders and with the example; nothing is written.
 model=configs/plants/ieee14_bus2.toml records=configs/records/record-example/avr_ev1.csv
-refuses "no model" "looked for in $work/empty.*$prefix/share/swingbank/$model" swingbank compare --model $model --records $records
+refuses "no model" "searched in $work/empty.*$prefix/share/swingbank/$model" swingbank compare --model $model --records $records
 [[ -z $(ls) ]] || fail "left behind: $(ls)"
 
 # The README's lines: copies the examples, then uses its arguments. `compare` takes seconds, `diagnose` minutes.

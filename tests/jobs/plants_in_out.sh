@@ -107,7 +107,7 @@ refuses "cut off" "may be truncated" "$swingbank" simulate --raw "$raw" --dyr "$
 refuses "a short record" "SEXS with 5 parameters .*--complete-records" "$swingbank" plant --raw "$raw" --dyr "$work/short.dyr" --bus 32
 "$swingbank" plant --raw "$raw" --dyr "$work/short.dyr" --bus 32 --complete-records zero >"$work/short.toml" 2>"$work/notes"
 grep -q 'has 5 of 6 values: EMAX = 0 ' "$work/notes" || fail "the value is not named: $(cat "$work/notes")"
-grep -q "short.dyr:$(wc -l <"$work/short.dyr"): EMIN = -500 pu (SEXS's is usually " "$work/notes" || fail "an unusual value: $(cat "$work/notes")"
+grep -q "short.dyr:$(wc -l <"$work/short.dyr"): EMIN = -500 pu (usual range of SEXS: " "$work/notes" || fail "an unusual value: $(cat "$work/notes")"
 
 # A block from `effects --toml` makes a plant.
 {

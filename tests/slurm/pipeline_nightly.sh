@@ -87,7 +87,7 @@ signal_generate "$work/once" "$(job_of generate)"
 cluster_retry 90 all_ended || fail "jobs still there after 90 s: $(squeue)"
 [[ $(job_state "$(job_of generate)") == FAILED ]] || fail "beyond the retry limit: $(job_state "$(job_of generate)")"
 [[ $(job_state "$(job_of tables)") == CANCELLED ]] || fail "a job behind a failed one: $(job_state "$(job_of tables)")"
-grep -qE 'given up at .* \(.*\): ' "$work/once/log/generate.log" || fail "no sentence about the retry limit"
+grep -qE 'no further (restart|retry) of job .* \(.*\): ' "$work/once/log/generate.log" || fail "no sentence about the retry limit"
 echo "retry limit kept, dependants cancelled (after $SECONDS s)"
 
 # A job array without a launcher: each task makes a part.

@@ -34,15 +34,15 @@ struct AlternatorRectifier : Alternator<Model> {
          upper,
          lower,
          {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNullValue, "alternator's time constant"},
-         {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
+         {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "gain of the rate feedback"},
          {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"},
          {"KC", "KC", "pu", 0.2, 0.0, 1.0, 0.0, "rectifier's commutating reactance", kAsEffect, kRange},
          {"KD", "KD", "pu", 0.38, 0.0, 2.0, 0.0, "alternator's armature reaction"},
          {"KE", "KE", "pu", 1.0, 0.0, 2.0, kNoNullValue, "self-excitation constant"},
          {"E1", "E1", "pu", 4.18, 0.0, 20.0, kNoNullValue, "first point of saturation"},
-         {"SE1", "SE(E1)", "-", 0.1, 0.0, 2.0, 0.0, "saturation there"},
+         {"SE1", "SE(E1)", "-", 0.1, 0.0, 2.0, 0.0, "saturation factor at E1"},
          {"E2", "E2", "pu", 3.14, 0.0, 20.0, kNoNullValue, "second point of saturation"},
-         {"SE2", "SE(E2)", "-", 0.03, 0.0, 2.0, 0.0, "saturation there"}}};
+         {"SE2", "SE(E2)", "-", 0.03, 0.0, 2.0, 0.0, "saturation factor at E2"}}};
   }
   enum C {
     iTR,

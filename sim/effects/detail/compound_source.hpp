@@ -43,8 +43,8 @@ struct CompoundSource {
   template <class T>
   static std::string refuses(const T& VB, const Signals<T>& s) {
     if (value_of(VB) > 0.0) return {};
-    return fmt::format("the source delivers VB = {:.4f} pu at V = {:.4f} pu, Ifd = {:.4f} pu", value_of(VB),
-                       value_of(s.V), value_of(s.Ifd));
+    return fmt::format("the source delivers no voltage (VB = {:.4f} pu) at V = {:.4f} pu, Ifd = {:.4f} pu",
+                       value_of(VB), value_of(s.V), value_of(s.Ifd));
   }
 };
 

@@ -80,7 +80,7 @@ struct DcTypeOne : DcBehindLeadLag<Model> {
       Dc::kVRMIN,
       Dc::kKE,
       Dc::kTE,
-      {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback"},
+      {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "gain of the rate feedback"},
       Dc::kTF,
       Dc::kSwitch,
       Dc::kE1,

@@ -45,7 +45,7 @@ struct Diesel {
   enum X { box, box_rate, integral, lead, throttle, delay, own_states = delay + kDelayOrder };
   static constexpr std::array<State, own_states> kStates = {{
       {"box", "pu", "control box", 1.0, -1, -1, {iT1, iTb}},
-      {"box_rate", "pu/s", "its slope", 0.01, -1, -1, {iTb}},
+      {"box_rate", "pu/s", "derivative of the control box's output", 0.01, -1, -1, {iTb}},
       {"integral", "pu", "actuator's integral", 1.0, low, high},
       {"lead", "pu", "state of the actuator's lead-lag", 1.0, -1, -1, {iT5}},
       {"throttle", "pu", "throttle", 1.0, low, high},

@@ -14,8 +14,8 @@ namespace swingbank::sim::effects::renewable {
 /// Returns the reason why an operating point is infeasible: currents [pu] beyond Imax.
 inline std::string beyond_imax(double active, double reactive, double most) {
   return fmt::format(
-      "it would need currents of {:.4f} (active) and {:.4f} pu (reactive), beyond Imax = {:.4f} pu", active,
-      reactive, most);
+      "the operating point needs currents of {:.4f} (active) and {:.4f} pu (reactive), beyond Imax = {:.4f} pu",
+      active, reactive, most);
 }
 
 struct ElectricalControl {

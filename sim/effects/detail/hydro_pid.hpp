@@ -22,17 +22,17 @@ constexpr Parameter curve_point(std::string_view name, std::string_view meaning)
   return {name, name, "pu", 0.0, 0.0, 99.0, kNoNullValue, meaning, kAsEffect, kFarPoint};
 }
 inline constexpr std::array kCurvePoints = {curve_point("GV1", "first opening (all 0: no curve)"),
-                                            curve_point("PGV1", "power there"),
+                                            curve_point("PGV1", "power at GV1"),
                                             curve_point("GV2", "second opening"),
-                                            curve_point("PGV2", "power there"),
+                                            curve_point("PGV2", "power at GV2"),
                                             curve_point("GV3", "third opening"),
-                                            curve_point("PGV3", "power there"),
+                                            curve_point("PGV3", "power at GV3"),
                                             curve_point("GV4", "fourth opening"),
-                                            curve_point("PGV4", "power there"),
+                                            curve_point("PGV4", "power at GV4"),
                                             curve_point("GV5", "fifth opening"),
-                                            curve_point("PGV5", "power there"),
+                                            curve_point("PGV5", "power at GV5"),
                                             curve_point("GV6", "sixth opening"),
-                                            curve_point("PGV6", "power there")};
+                                            curve_point("PGV6", "power at GV6")};
 
 /// Gate servo with backlash. A Model has the coefficients servo, iTP, opening, closing, high, low, play and
 /// follow, and the states velocity, gate and position.

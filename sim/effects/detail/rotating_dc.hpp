@@ -20,7 +20,8 @@ struct RotatingDc {
   static constexpr Source kDefault = literature::andes("IEEET1, commit 066781b");
   static constexpr Source kMild = literature::own("a small saturation at rated excitation");
   static constexpr Source kRange = literature::sienna("IEEET1");
-  static constexpr Source kTwice = literature::own("PowerSystems.jl's -1 to 1, with twice the upper end");
+  static constexpr Source kTwice =
+      literature::own("PowerSystems.jl's range -1 to 1 with its upper end doubled");
   static constexpr Source kSteep =
       literature::own("not negative; seven records of dynamicsWECC.dyr (GridDyn) lie beyond, at 3.05");
   static constexpr Parameter
@@ -33,17 +34,16 @@ struct RotatingDc {
              kDefault, kTwice},
       kTE = {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNullValue, "exciter time constant", kDefault},
       kKA = {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNullValue, "regulator gain", kOfDc2},
-      kKF = {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "rate feedback", kOfDc2},
+      kKF = {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "gain of the rate feedback", kOfDc2},
       kTF = {"TF",    "TF", "s",          1.0,
              0.02,    20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)",
              kDefault},
-      kSwitch = {"Switch", "Switch", "code",       0.0,
-                 0.0,      1.0,      kNoNullValue, "a column of the .dyr; without effect",
+      kSwitch = {"Switch", "Switch", "code", 0.0, 0.0, 1.0, kNoNullValue, "column of the .dyr without effect",
                  kDefault, kCode},
       kE1 = {"E1", "E1", "pu", 2.4, 0.0, 20.0, kNoNullValue, "first point of saturation", kMild},
-      kSE1 = {"SE1", "SE(E1)", "-", 0.03, 0.0, 2.0, 0.0, "saturation there", kMild},
+      kSE1 = {"SE1", "SE(E1)", "-", 0.03, 0.0, 2.0, 0.0, "saturation factor at E1", kMild},
       kE2 = {"E2", "E2", "pu", 5.0, 0.0, 20.0, kNoNullValue, "second point of saturation", kMild},
-      kSE2 = {"SE2", "SE(E2)", "-", 0.5, 0.0, 2.0, 0.0, "saturation there", kMild, kSteep};
+      kSE2 = {"SE2", "SE(E2)", "-", 0.5, 0.0, 2.0, 0.0, "saturation factor at E2", kMild, kSteep};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_with({Model::TR, Model::TA}, p, where, problems);
@@ -91,7 +91,7 @@ struct RotatingDc {
     using M = Model;
     const T saturation = Quadratic<T>{c[M::satA], c[M::satB]}(s.Efd);
     if (value_of(p[M::KE]) == 0.0 && !(value_of(s.Efd) > 0.0))
-      return fmt::format("KE = 0 is computed from Efd, and Efd = {:.4f} pu is not above zero",
+      return fmt::format("with KE = 0, KE is computed from Efd, which must be positive; here Efd = {:.4f} pu",
                          value_of(s.Efd));
     const auto given = p[M::KE] * p[M::KE] > T(0.0);
     c[M::self] = select(given, p[M::KE], (T(0.1) * c[M::vrmax] - saturation) / select(given, T(1.0), s.Efd));

@@ -12,7 +12,7 @@
 namespace swingbank::sim::effects::shared {
 
 struct SetpointMove {
-  static constexpr std::string_view source = "a disturbance; its shape by definition";
+  static constexpr std::string_view source = "a disturbance defined by its shape";
   static constexpr Source defaults_from = kNothing;
   static constexpr Slot slot = Slot::setpoint;
 

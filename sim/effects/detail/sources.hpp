@@ -23,8 +23,9 @@ inline constexpr Source kBeyondKundur = literature::own(
 inline constexpr Source kDamping = literature::own("no negative damping; the case files reach 8");
 inline constexpr Source kSaturation = literature::own("not negative; the case files reach 1.0 and 1.3");
 inline constexpr Source kBeyondClass = literature::own("far beyond the worst accuracy class, 10 %");
-inline constexpr Source kNoMeasurement = literature::own("a tenth of the quantity, and 1 Hz, are useless");
-inline constexpr Source kAnyTime = literature::own("a run begins at 0; longer than any record");
+inline constexpr Source kNoMeasurement =
+    literature::own("a tenth of the quantity, or 1 Hz: larger errors make the measurement useless");
+inline constexpr Source kAnyTime = literature::own("from 0, where a run begins, to longer than any record");
 inline constexpr Source kRating = literature::own("not more than the rating");
 
 // Defaults.

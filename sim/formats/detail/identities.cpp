@@ -56,7 +56,7 @@ std::optional<std::string> Identities::id(network::Duplicate of, const std::stri
       if (std::ranges::none_of(kept_, same)) kept_.push_back(of);
       return of.id;
     }
-  problems_.add(identity(given) + " appears too often", fields.where(), "all 81 new ids are in use",
+  problems_.add("too many duplicates of " + identity(given), fields.where(), "all 81 new ids are in use",
                 "give it another id");
   return {};
 }

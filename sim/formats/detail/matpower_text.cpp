@@ -165,7 +165,7 @@ std::vector<Row> read_rows(const std::string& text, int line, const std::string&
       word += text[i++];
     const auto value = number(word);
     if (!value)
-      problems.add("'" + word + "'", file + ":" + std::to_string(line),
+      problems.add("'" + word + "' is not a number", file + ":" + std::to_string(line),
                    "a matrix of a case contains only numbers", "write the value as a number");
     if (row.values.empty()) row.line = line;
     row.values.push_back(value.value_or(0.0L));
@@ -187,7 +187,7 @@ bool passed_over(const std::string& text) {
 void not_understood(const Statement& s, const std::string& file, Problems& problems) {
   std::string shown = s.text.substr(0, s.text.find('\n'));
   if (shown.size() > 40) shown = shown.substr(0, 40) + "...";
-  problems.add("'" + shown + "'", file + ":" + std::to_string(s.line),
+  problems.add("unsupported statement '" + shown + "'", file + ":" + std::to_string(s.line),
                "only assignments of numbers, texts and matrices are read; expressions are not evaluated",
                "save the case with savecase, which writes plain numbers");
 }

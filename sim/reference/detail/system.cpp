@@ -333,8 +333,8 @@ bool ReferenceSystem::search_voltages(double t, double* y) const {
 
 void ReferenceSystem::solve_voltages(double t, double* y) const {
   if (search_voltages(t, y)) return;
-  throw InputError({"no voltages satisfy the network", fmt::format("t = {:g} s", t),
-                    "loads and sources have no solution after this switching",
+  throw InputError({"the network equations have no voltage solution", fmt::format("t = {:g} s", t),
+                    "loads and sources demand more than the grid can deliver after this switching",
                     "use load models whose power decreases at low voltage, or another event"});
 }
 

@@ -65,7 +65,7 @@ class Parser {
       fail(tree->at,
            condition ? "a value where a condition is needed" : "a comparison where a value is needed",
            condition ? "a condition is a < b, a > b, a <= b or a >= b"
-                     : "comparisons stand in the first argument of select",
+                     : "a comparison is allowed only as the first argument of select",
            condition ? "write a comparison" : "write select(a < b, value, other value)");
     return tree;
   }
@@ -98,7 +98,8 @@ class Parser {
   }
   static Tree value_only(Tree tree) {
     if (compares(*tree))
-      fail(tree->at, "a comparison inside an expression", "comparisons stand in the first argument of select",
+      fail(tree->at, "a comparison inside an expression",
+           "a comparison is allowed only as the first argument of select",
            "write select(a < b, value, other value)");
     return tree;
   }
@@ -166,11 +167,10 @@ class Parser {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
     if (error != std::errc{} || !std::isfinite(value))
-      fail(at, "a number that cannot be read", "it is not written as one or too large",
-           "write it like 2.5e-3");
+      fail(at, "an invalid number", "it is malformed or too large", "write it like 2.5e-3");
     at_ = static_cast<std::size_t>(end - text_.data());
     if (at_ < text_.size() && letter(text_[at_]))
-      fail(at_, "a name right after a number", "there is no operator between them", "write 2*x, not 2x");
+      fail(at_, "a name directly after a number", "there is no operator between them", "write 2*x, not 2x");
     return node(Op::number, {}, at, value);
   }
   Tree name() {
@@ -187,7 +187,7 @@ class Parser {
   Tree call(const std::string& word, std::size_t at, std::size_t bracket) {
     const Function* f = find_function(word);
     if (!f)
-      fail(at, "unknown function " + word, "there is none of that name", "use one of: " + function_names());
+      fail(at, "unknown function " + word, "no such function exists", "use one of: " + function_names());
     std::vector<Tree> arguments;
     if (!take(")")) {
       do arguments.push_back(expression(0));

@@ -137,10 +137,9 @@ void Reader::read_references() {
       user_model_.searched.push_back(coefficients_);
       searched_.emplace(name, graph_.solved(coefficients_++));
       if (!user_model_.must_meet())
-        problem(
-            key, 0, "'solve'",
-            fmt::format("nothing asks for a certain {} at the operating point", user_model_.output_name()),
-            "give an expression of parameters and values at the operating point");
+        problem(key, 0, "'solve'",
+                fmt::format("the operating point does not prescribe {}", user_model_.output_name()),
+                "give an expression of parameters and values at the operating point");
       else if (user_model_.searched.size() > 1)
         problem(key, 0, "a second 'solve'", "one output determines one reference",
                 "give the other as an expression");
@@ -174,7 +173,7 @@ void Reader::read_states() {
     if (config_.has(key + "high")) states_[at].high = value(key + "high");
     states_[at].start = value(key + "start", 0.0);
     if (!graph_[states_[at].start].fixed)
-      problem(key + "start", 0, "a start that moves", "the search begins before the run",
+      problem(key + "start", 0, "a start value that varies during the run", "it is needed before the run",
               "use parameters and values at the operating point");
   }
 }
@@ -210,7 +209,8 @@ void Reader::read_requirements() {
     }
     switching_time_vertices_.push_back(lower(tree, key));
     if (!graph_[switching_time_vertices_.back()].parameters)
-      problem(key, 0, "an instant that is not known beforehand", "a run is cut at it", "use parameters only");
+      problem(key, 0, "a switching time that is not known before the run", "the integration is split there",
+              "use parameters only");
   }
 }
 
@@ -311,7 +311,7 @@ void Reader::finish() {
     const Vertex& vertex = graph_[static_cast<int>(v)];
     const int index = user_model_.code.coefficient_of[v];
     if (index >= 0 && vertex.parameters && vertex.act != Act::coefficient)
-      user_model_.finite.emplace_back(index, "a value that follows from the parameters alone");
+      user_model_.finite.emplace_back(index, "a value computed from the parameters");
   }
 }
 

@@ -51,7 +51,7 @@ TEST(EventText, ATripNamesABranchAWindingOrAWholeTransformer) {
   EXPECT_THAT(sentences_of([&] { opened("101:102:7:1"); }), HasSubstr("no branch 101-102 circuit 7"));
   EXPECT_THAT(sentences_of([&] { opened("101:102:104:7:1:2"); }),
               HasSubstr("no branch 101-102-104 circuit 7"));
-  EXPECT_THAT(sentences_of([&] { opened("101:102"); }), HasSubstr("2 fields"));
+  EXPECT_THAT(sentences_of([&] { opened("101:102"); }), HasSubstr("2 fields in '101:102'"));
   EXPECT_EQ(network.branch_text(network.branches[3]), "winding at bus 102 of 101-102-104 circuit 1");
   EXPECT_EQ(network.bus_text(4), "star point of 101-102-104");
 }
@@ -64,7 +64,7 @@ TEST(EventText, ReportsEveryError) {
   (void)read_load_step("9999:x:0:3", network, 2.0, "--load-step", problems);
   (void)read_setpoint_step("9999:nan:1", network, 2.0, true, "--vref-step", problems);
   const std::string text = sentences_of([&] { problems.raise(); });
-  for (const char* what : {"no generator 9999 at --trip-generator", "1 fields at --trip-generator",
+  for (const char* what : {"no generator 9999 at --trip-generator", "1 fields in '101' at --trip-generator",
                            "no bus 9999 at --load-step", "'x' is not a number at --load-step",
                            "an event at 3 s in a run of 2 s", "'nan' is not a number at --vref-step"})
     EXPECT_THAT(text, HasSubstr(what));

@@ -155,7 +155,7 @@ TEST(PsseDyr, CtrlZAndQAndZeroEndTheFile) {
     EXPECT_THAT(r[1].values, ElementsAre(4.0, 0.5));
   }
   EXPECT_THAT(sentences_of([&] { parse_dyr(records + "0 / END\n" + records, "x.dyr"); }),
-              HasSubstr("records after the end of the file at x.dyr:4 (line 3 ends it)"));
+              HasSubstr("records after the end mark at x.dyr:4 (line 3 (Q or 0) ends the file)"));
 }
 
 TEST(PsseDyr, HashAndExclamationMarkBeginComments) {

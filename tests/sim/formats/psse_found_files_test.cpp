@@ -197,7 +197,7 @@ TEST(FoundFiles, RemoteRegulationIsRead) {
   c.buses += "105,'B',138.0,1,1,1,1,1.0,0\n";  // isolated, hence out of service
   const network::Network alone = c.read();
   EXPECT_EQ(alone.generators[1].regulated, -1);
-  EXPECT_THAT(places(alone, "a bus out of service"), ::testing::SizeIs(1));
+  EXPECT_THAT(places(alone, "regulated bus is out of service"), ::testing::SizeIs(1));
 }
 
 TEST(FoundFiles, ReplacesImpossibleValuesWithARemark) {

@@ -28,8 +28,8 @@ TEST(PsseKind, ReportsExchangedFilesInOneSentence) {
   const std::string raw = RawCase().text();
   EXPECT_THAT(sentences(raw, kDyr), ElementsAre());
   EXPECT_THAT(sentences(kDyr, raw), ElementsAre(HasSubstr("exchange --raw and --dyr")));
-  EXPECT_THAT(sentences(kDyr, kDyr), ElementsAre(AllOf(HasSubstr("no .raw"), HasSubstr("'GENCLS'"))));
-  EXPECT_THAT(sentences(raw, raw), ElementsAre(HasSubstr("no .dyr")));
+  EXPECT_THAT(sentences(kDyr, kDyr), ElementsAre(AllOf(HasSubstr("not a .raw file"), HasSubstr("'GENCLS'"))));
+  EXPECT_THAT(sentences(raw, raw), ElementsAre(HasSubstr("not a .dyr file")));
   EXPECT_THAT(sentences("{\"network\": {}}", kDyr), ElementsAre());
   EXPECT_THAT(sentences(kDyr, "{\"network\": {}}"), ElementsAre(HasSubstr("exchange")));
   EXPECT_THAT(sentences(raw, "'DC 1' 'CDC6T' 1 2 /\n"), ElementsAre());
@@ -53,8 +53,8 @@ TEST(PsseKind, ReportsAWrongVersionWithTheRightOne) {
   EXPECT_TRUE(faults(without_version, {60.0, 33}).empty());
   const auto wrong = faults(without_version, {60.0, 23});
   ASSERT_EQ(wrong.size(), 1u);
-  EXPECT_THAT(wrong[0].sentence(), AllOf(HasSubstr("faults as version 23"), HasSubstr("it has none"),
-                                         HasSubstr("--raw-version 33")));
+  EXPECT_THAT(wrong[0].sentence(), AllOf(HasSubstr("errors when read as version 23"),
+                                         HasSubstr("it has none"), HasSubstr("--raw-version 33")));
   std::string header = text;
   header.replace(header.find("33"), 2, "23");
   const auto said = faults(header, {});

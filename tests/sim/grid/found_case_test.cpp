@@ -160,7 +160,7 @@ TEST(FoundCase, AcceptsGenrouWithoutQAxisTransientCircuitWithARemark) {
 TEST(FoundCase, AcceptsUnusualValuesWithARemark) {
   const Grid grid = make({}, kBoth + "101 'TGOV1' 1 0.05 0.5 2 -1.5 2 7 0 /\n");
   EXPECT_THAT(places(grid, "usual range"),
-              ElementsAre("case.dyr:3: VMIN = -1.5 pu (TGOV1's is usually -1 to 1 pu)"));
+              ElementsAre("case.dyr:3: VMIN = -1.5 pu (usual range of TGOV1: -1 to 1 pu)"));
   EXPECT_EQ(grid.plants[0].controls[0].p[3], -1.5);
 }
 

@@ -26,7 +26,7 @@ TEST(Usual, NamesValuesOutsideTheirRange) {
   EXPECT_TRUE(unusual(block).empty());
   block.p[static_cast<std::size_t>(block.effect->parameter_index("VMIN"))] = -1.5;
   EXPECT_THAT(unusual_texts(block, "x.dyr:12"),
-              ElementsAre("x.dyr:12: VMIN = -1.5 pu (TGOV1's is usually -1 to 1 pu)"));
+              ElementsAre("x.dyr:12: VMIN = -1.5 pu (usual range of TGOV1: -1 to 1 pu)"));
   block.p[static_cast<std::size_t>(block.effect->parameter_index("VMIN"))] = -999;
   EXPECT_TRUE(unusual(block).empty()) << "none";
 }

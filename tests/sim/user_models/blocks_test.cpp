@@ -89,20 +89,21 @@ std::string refusal(const std::string& text, Signals<double> s = test::ControlBe
 }
 TEST(UserModelOperatingPoint, RefusesInfeasibleOperatingPointWithReason) {
   EXPECT_EQ(refusal(user_model_of("Efd", "replace", "value = \"3.5\"")),
-            "it gives Efd = 3.5 pu where the machine needs 2 pu (a reference = \"solve\" would meet it)");
+            "it gives Efd = 3.5 pu, but the machine needs 2 pu; declare a reference = \"solve\"");
   EXPECT_EQ(refusal(user_model_of("Tm", "add", "value = \"0.1 * V\"")),
-            "it adds 0.1 pu to Tm where nothing has happened yet (subtract "
+            "it adds 0.1 pu to Tm in the steady state (subtract "
             "the value at the operating point, as in V - V0)");
   EXPECT_EQ(refusal(user_model_of("Tm", "add", "value = \"0.1 * (V - V0)\"")), "");
   EXPECT_EQ(
       refusal(user_model_of("Vs", "add",
                             "value = \"x\"\n[states.x]\nunit = \"pu\"\nmeaning = \"m\"\nderivative = \"1\"")),
-      "state x does not come to rest: it moves at 1 per second at 0 pu");
+      "state x has no steady state: it changes by 1 per second at 0 pu");
   EXPECT_EQ(
       refusal(user_model_of(
           "Vs", "add", "value = \"x\"\n[states.x]\nunit = \"pu\"\nmeaning = \"m\"\nderivative = \"log(x)\"")),
-      "the derivative of x is no number there");
-  EXPECT_EQ(refusal(user_model_of("Vs", "add", "value = \"1 / speed\"")), "its Vs is no number there");
+      "the derivative of x is not a finite number at the operating point");
+  EXPECT_EQ(refusal(user_model_of("Vs", "add", "value = \"1 / speed\"")),
+            "its Vs is not a finite number at the operating point");
   // evaluated before the first switching time, independent of the later value
   EXPECT_EQ(
       refusal(user_model_of("Tm", "add", "value = \"select(t < 1, 0, 0.1)\"\nswitching_times = [\"1\"]")),
@@ -130,7 +131,7 @@ TEST(UserModelOperatingPoint, ParametersAreChecked) {
   EXPECT_TRUE(problems({0.1, 10.0, 100.0, 0.1, -4.0, 5.0}).empty());
   const auto crossed = problems({0.1, 10.0, 100.0, 0.1, 6.0, 5.0});
   ASSERT_EQ(crossed.size(), 1u);
-  EXPECT_NE(crossed[0].sentence().find("EMIN < EMAX does not hold (6 against 5) at here"), std::string::npos)
+  EXPECT_NE(crossed[0].sentence().find("EMIN < EMAX is violated: 6 and 5 at here"), std::string::npos)
       << crossed[0].sentence();
   EXPECT_EQ(problems({std::nan(""), 10.0, 100.0, 0.1, -4.0, 5.0}).size(), 1u);
   const Effect user_model = make_user_model(user_model_of("Vs", "add", R"law(value = "speed / T"
@@ -144,7 +145,7 @@ T = { unit = "s", default = 1, low = 0, high = 2, meaning = "divisor" })law"),
   EXPECT_EQ(refusal(user_model_of("Vs", "add", R"law(value = "speed / T"
 [parameters]
 T = { unit = "s", default = 0, low = 0, high = 2, meaning = "divisor" })law")),
-            "its Vs is no number there");
+            "its Vs is not a finite number at the operating point");
 }
 
 }  // namespace

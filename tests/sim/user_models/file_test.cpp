@@ -76,7 +76,7 @@ TEST(UserModelExpression, ReportsEveryErrorWithItsPosition) {
       {"1 +", "the expression ends too early in value at x.toml:6:13"},
       {"1 $ 2", "'$' after the end of the expression in value at x.toml:6:12"},
       {"(1", "a missing ')' in value at x.toml:6:12"},
-      {"2x", "a name right after a number in value at x.toml:6:11"},
+      {"2x", "a name directly after a number in value at x.toml:6:11"},
       {"foo(1)", "unknown function foo in value at x.toml:6:10"},
       {"1 + bar", "unknown name bar in value at x.toml:6:14"},
       {"min(1)", "min with 1 arguments in value at x.toml:6:10"},
@@ -86,7 +86,7 @@ TEST(UserModelExpression, ReportsEveryErrorWithItsPosition) {
       {"2 * (1 < 2)", "a comparison inside an expression in value at x.toml:6:17"},
       {"2 ^ 0.5", "an exponent that is no whole number in value at x.toml:6:14"},
       {"2 ^ 99", "an exponent that is no whole number in value at x.toml:6:14"},
-      {"1e999", "a number that cannot be read in value at x.toml:6:10"},
+      {"1e999", "an invalid number in value at x.toml:6:10"},
       {"", "the expression ends too early in value at x.toml:6:10"},
       {"Efd", "signal Efd in value at x.toml:6:10"},
       {"Vs", "signal Vs in value at x.toml:6:10"}};
@@ -128,7 +128,7 @@ V1 = "V * 2"
           "the expression ends too early in require[1] at bad.toml:9:", "parameters.K.standard = 5.0",
           "parameter called speed",
           "a loop through loop in signals.loop at bad.toml:14:", "missing key states.x.meaning",
-          "signal Efd in states.x.derivative at bad.toml:17:", "reference V1 that moves"})
+          "signal Efd in states.x.derivative at bad.toml:17:", "reference V1 varies during the run"})
       EXPECT_NE(said.find(part), std::string::npos) << part << "\nis not in\n" << said;
     for (const Problem& p : e.problems())
       EXPECT_FALSE(p.remedy.empty() || p.why.empty() || p.where.empty()) << p.what;

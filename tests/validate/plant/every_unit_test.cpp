@@ -140,7 +140,7 @@ TEST_P(EveryUnitFull, IsExtractedAndInitialised) {
       why = difference_from(before[k], model.plant);
       if (why.empty()) why = fault_of_export(model);
       unusual += std::ranges::any_of(
-          model.warnings, [](const std::string& w) { return w.find("is usually") != std::string::npos; });
+          model.warnings, [](const std::string& w) { return w.find("usual range of") != std::string::npos; });
       widened += difference_from(before[k], l.grid.plants[k]).empty() ? 0 : 1;
       model.plant.controls = l.grid.plants[k].controls;  // with widened limits
       model.plant.generation = before[k].generation;

@@ -337,7 +337,7 @@ TEST_F(SystemCompare, ReportsBadInput) {
   record({.attached = same});
   const std::pair<std::pair<const char*, const char*>, const char*> cases[] = {
       {{"4:2.0:2.1", "99:2.0:2.1"}, "no bus 99"},
-      {{"4:2.0:2.1", "4:2.0:99"}, "fault to 99 s"},
+      {{"4:2.0:2.1", "4:2.0:99"}, "a fault that ends at 99 s"},
       {{"fault = [\"4:2.0:2.1\"]", ""}, "no event"},
       {{"plant = \"8\"", "plant = \"9\""}, "no plant 9"},
       {{"bus = 5", "bus = 77"}, "no bus 77"},
