@@ -52,9 +52,9 @@ files() {
   done
 }
 
-# says: appends to each input path a tab, and the name and title of an effect or the first sentence of the head comment.
+# with_sentence: appends to each input path a tab, and the name and title of an effect or the first sentence of the head comment.
 # A full stop in parentheses or after an initial does not end the sentence.
-says() {
+with_sentence() {
   awk '
     function first_sentence(s,   i, c, depth) {
       for (i = 1; i < length(s); ++i) {
@@ -81,7 +81,7 @@ says() {
       gsub(/^[^"]*"|"$/, "", s)
       return s
     }
-    function said(path, effect,   line, n, text, behind, inside, declared) {
+    function sentence_of(path, effect,   line, n, text, behind, inside, declared) {
       for (n = 1; (getline line < path) > 0; ++n) {
         if (n == 1 && line ~ /^#pragma once/) continue
         if (!behind && line ~ /^\/\/ ?[^ ]/) {
@@ -102,33 +102,33 @@ says() {
       gsub(/" +"/, "", declared)
       return quoted(declared, "title") ? quoted(declared, "name") ": " quoted(declared, "title") : first_sentence(text)
     }
-    { print $0 "\t" as_cell(said($0, $0 ~ /^sim\/effects\// && $0 !~ /\/detail\//)) }'
+    { print $0 "\t" as_cell(sentence_of($0, $0 ~ /^sim\/effects\// && $0 !~ /\/detail\//)) }'
 }
 
 # table MODULE: prints the table of its files.
 table() {
-  local name file said
-  files "$1" >"$work/there"
+  local name file sentence
+  files "$1" >"$work/present"
   sed -n '/^<!-- files -->$/,/^<!-- end of files -->$/s/^| `\([^`]*\)` |.*/\1/p' "$1/README.md" >"$work/listed"
   printf '%s\n' '| file | content |' '|---|---|'
-  { grep -Fxf "$work/there" "$work/listed" || true; grep -vFxf "$work/listed" "$work/there" || true; } |
+  { grep -Fxf "$work/present" "$work/listed" || true; grep -vFxf "$work/listed" "$work/present" || true; } |
     while read -r name; do
       file=$1/$name.hpp
       [[ -e $file ]] || file=$1/$name.cpp
       printf '%s\n' "$file"
-    done | says |
-    while IFS=$'\t' read -r file said; do
-      if [[ -z $said ]]; then
+    done | with_sentence |
+    while IFS=$'\t' read -r file sentence; do
+      if [[ -z $sentence ]]; then
         echo "no head comment at $file (the module's table shows its first sentence): describe the file in a first sentence" >&2
         return 1
       fi
       name=${file#"$1"/}
-      printf '| `%s` | %s |\n' "${name%.*}" "$said"
+      printf '| `%s` | %s |\n' "${name%.*}" "$sentence"
     done
 }
 
-# written MODULE: prints its README with both parts up to date.
-written() {
+# updated_readme MODULE: prints its README with both parts up to date.
+updated_readme() {
   uses "$1" >"$work/uses"
   table "$1" >"$work/files"
   awk -v folder="$work" '
@@ -151,7 +151,7 @@ while read -r module _; do
       exit 1
     fi
   done
-  written "$module" >"$work/README.md"
+  updated_readme "$module" >"$work/README.md"
   if cmp -s "$work/README.md" "$readme"; then continue; fi
   if ((check)); then
     echo "out of date at $readme (its dependencies or the head comments of its files have changed): run bash docs/readme_tables.sh" >&2

@@ -147,7 +147,7 @@ TEST(OpenipslRecords, HygovWithScrx) {
       "1 'SCRX' '1' 0.1 10 100 0.05 0 5 0 0 /\n"
       "1 'HYGOV' '1' 0.05 0.3 5 0.05 0.5 0.02 0.415 0 1.25 1.2 0.2 0.08 /\n",
       // The required 2e-3 of the power is not applicable: the curve violates its own equations by more than
-      // that (HygovsCurveIsOffItsOwnEquations).
+      // that (HygovCurveDiffersFromItsEquations).
       with(with(machine("gENSAL"), {Channel::Efd, "sCRX.EFD", 2e-3}), {Channel::Tm, "hYGOV.PMECH", 3e-3}));
 }
 /// Cubic interpolation of a curve through four samples, none from beyond a switching time, where a file has
@@ -212,7 +212,7 @@ struct OpenipslsHygov {
 // With the curve's speed as input, the equations of OpenIPSL and of Swingbank differ from the curve's power
 // by the same 0.277 % of its swing, at 6.7 s. The error in HygovWithScrx is therefore that of the curve's
 // integration: its gate is wrong at the start and end of each velocity limit, in every half swing.
-TEST(OpenipslRecords, HygovsCurveIsOffItsOwnEquations) {
+TEST(OpenipslRecords, HygovCurveDiffersFromItsEquations) {
   test::Table record = test::read_table(folder() / "HYGOV/modelica_results.csv", true);
   for (std::string& column : record.names) std::erase(column, '"');
   const auto column = [&](const char* name) {
