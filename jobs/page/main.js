@@ -369,7 +369,7 @@ const save = onStep(async () => {
   const { step } = state;
   const saved = await api.save(step.step);
   by("saved").replaceChildren(
-    `Saved “${step.label}” (${times(step.ratio)} noise)${saved.replaced ? " replacing the existing files" : ""}: `,
+    `Saved “${step.label}” (${times(step.ratio)} noise)${saved.replaced ? ", replacing the existing files" : ""}: `,
     saved.files.join(", "),
     ". Check it: ",
     make("code", { textContent: saved.command }),
