@@ -11,6 +11,7 @@
 
 #include "validate/record/detail/build.hpp"
 #include "validate/record/detail/comtrade_cfg.hpp"
+#include "validate/record/detail/text.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -98,7 +99,7 @@ class Data {
       kind = two ? "BINARY" : contains_floats() ? "FLOAT32" : out_.kind == "FLOAT32" ? out_.kind : "BINARY32";
     if (kind == out_.kind || dat_.empty()) return;
     out_.notes.push_back(
-        fmt::format("The configuration names the data type {}, the data are {}: they were read as such.",
+        fmt::format("The configuration states data type {0}, but the data are {1}; they were read as {1}.",
                     out_.kind, kind));
     out_.kind = kind;
   }
@@ -106,7 +107,7 @@ class Data {
   void lines() {
     int number = 0;
     while (!dat_.empty()) {
-      const auto fields = comtrade_fields(comtrade_line(dat_));
+      const auto fields = comtrade_fields(take_line(dat_));
       ++number;
       if (fields.size() == 1 && fields[0].empty()) continue;
       if (is_surplus()) continue;
@@ -118,7 +119,7 @@ class Data {
       const std::size_t sample = begin(static_cast<std::size_t>(number));
       if (fields.size() != wanted)
         faults_.add("fields", fmt::format("{} fields", fields.size()), sample,
-                    fmt::format("the configuration means {}", wanted), "export the data again");
+                    fmt::format("the configuration requires {} fields", wanted), "export the data again");
       const auto field = [&](std::size_t i) { return i < fields.size() ? fields[i] : std::string_view{}; };
       numbered(sample, comtrade_number(field(0)).value_or(-1));
       stamps_.push_back(comtrade_number(field(1)).value_or(kNoValue));
@@ -131,7 +132,7 @@ class Data {
   double text_value(const ComtradeChannel& channel, std::string_view text, std::size_t sample) {
     const auto v = comtrade_number(text);
     if (!v && !text.empty())
-      faults_.add(channel.id, fmt::format("{} = '{}'", channel.id, text), sample, "this is no number",
+      faults_.add(channel.id, fmt::format("{} = '{}'", channel.id, text), sample, "it is not a number",
                   "export the data again");
     return v && !(out_.revision < 2013 && *v == 99999) ? *v : kNoValue;
   }
@@ -187,7 +188,7 @@ class Data {
   void numbered(std::size_t sample, double number) {
     if (sample > 0 && number != next_number_)
       faults_.add("number", fmt::format("sample number {:g}", number), sample,
-                  fmt::format("{:g} was to come", next_number_),
+                  fmt::format("expected {:g}", next_number_),
                   "samples are missing or repeated: fill the gap at the source, or cut the record");
     next_number_ = number + 1;
   }
@@ -209,8 +210,7 @@ class Data {
     }
     if (turns > 0)
       out_.notes.push_back(
-          "The time stamps pass 2^32, the largest that the format holds, and begin at zero again: they were "
-          "continued.");
+          "The time stamps overflow at 2^32, the largest value of the format; they were unwrapped.");
   }
 
   void times() {
@@ -266,12 +266,12 @@ class Data {
           fmt::format("by the rate the record lasts {:.4g} s, by its stamps {:.4g} s: one of them is "
                       "in another unit",
                       rated, stamped),
-          "correct the rate in the .cfg, or the time multiplier in its last line; with '0' for the number of "
-          "rates and '0' for the rate the stamps count");
+          "correct the rate or the time multiplier in the .cfg; to use the time stamps, set the number of "
+          "rates and the rate to 0");
     else
       out_.notes.push_back(fmt::format(
           "The time stamps of the data span {:.6g} s, the sampling rate of the configuration {:.6g} s; the "
-          "rate was taken.",
+          "rate was used.",
           stamped, rated));
   }
 
@@ -290,7 +290,7 @@ std::string_view section(std::string_view cff, std::string_view word, std::strin
   constexpr std::string_view mark = "--- file type:";
   for (auto at = cff.find(mark); at != std::string_view::npos; at = cff.find(mark, at + 1)) {
     std::string_view rest = cff.substr(at);
-    heading = comtrade_line(rest);
+    heading = take_line(rest);
     if (heading.find(word) == std::string::npos) continue;
     if (heading.find("BINARY") == std::string::npos && heading.find("FLOAT") == std::string::npos)
       return rest.substr(0, rest.find(mark));
@@ -345,8 +345,8 @@ bool put_onto_mean_rate(Comtrade& c) {
   for (std::size_t channel = 0; channel < even.size(); ++channel)
     c.channels[channel].values = std::move(even[channel]);
   c.notes.push_back(fmt::format(
-      "The record has {} sampling rates from {:.6g} to {:.6g} per second: its waveforms were put onto an "
-      "even {:.7g} per second.",
+      "The record has {} sampling rates from {:.6g} to {:.6g} samples/s; its waveforms were resampled "
+      "uniformly at {:.7g} samples/s.",
       c.stretches.size(), low.rate, high.rate, rate));
   c.t = std::move(t);
   c.stretches = {{rate, 0, n}};
@@ -377,8 +377,8 @@ void make_even(Comtrade& c, double min_rate, Problems& problems) {
     if (i >= from && i < to && all[i].rate == low) anchor = all[i].first;
     if (i >= from && i < to && std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
       problems.add(fmt::format("sampling rates of {:g} and {:g} per second", all[i].rate, low), c.file,
-                   "the faster is no multiple of the slower, so no even sampling exists",
-                   "export the section with one rate, or one at a common rate");
+                   "the higher rate is not a multiple of the lower one, so no uniform sampling exists",
+                   "export the record with a single rate");
   }
   std::vector<std::size_t> kept;
   for (std::size_t k = all[from].first; k < all[to - 1].end; ++k) {
@@ -387,8 +387,9 @@ void make_even(Comtrade& c, double min_rate, Problems& problems) {
   }
   std::string note = fmt::format("The record has the sampling rates {} per second; ", rates);
   if (to - from < all.size())
-    note += fmt::format("the section from {:.4g} to {:.4g} s was taken, the rest is too slow for waveforms",
-                        c.t[kept.front()], c.t[kept.back()]);
+    note += fmt::format(
+        "the section from {:.4g} to {:.4g} s was used; all other sections are too slow for waveforms",
+        c.t[kept.front()], c.t[kept.back()]);
   if (kept.size() < all[to - 1].end - all[from].first)
     note += fmt::format("{}faster sections were decimated to {:g} per second",
                         to - from < all.size() ? "; " : "", low);

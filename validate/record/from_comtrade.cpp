@@ -62,9 +62,7 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
   }
   PhasorTrack track = phase_phasors(w, nominal, rate);
   if (const auto fault = sequence_fault(track.x, names))
-    problems.add(fault->what, comtrade.file,
-                 fmt::format("of {}, {}, {} the negative sequence is larger than the positive one", names[0],
-                             names[1], names[2]),
+    problems.add(fault->what, comtrade.file, fault->why,
                  fault->remedy + " (the .cfg defines the channels' names and phases)");
   // Times and angles refer to the record's first sample, which make_even may have removed.
   const double begin = comtrade.t.front();
@@ -81,15 +79,15 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
 void note_set(const WaveSet& set, bool voltage, Record& about) {
   if (set.between)
     about.notes.emplace_back(
-        "The voltages are those between phases: the positive sequence to neutral is theirs over sqrt(3), 30 "
-        "degrees later.");
+        "The voltages are line to line. Their positive sequence was divided by sqrt(3) and delayed by 30 "
+        "degrees.");
   for (std::size_t p = 0; p < 3; ++p)
     if (!set.waves[p])
       about.notes.push_back(
           fmt::format("The {} {} is not recorded: it is the negative sum of the two others{}.",
                       voltage ? "voltage" : "current of phase",
                       voltage ? std::array{"AB", "BC", "CA"}[p] : std::array{"A", "B", "C"}[p],
-                      voltage ? "" : ", which holds where no current flows to ground"));
+                      voltage ? "" : ", which is valid only if no current flows to ground"));
 }
 
 RawColumn column(std::string name, Quantity q, Unit u, std::vector<double> values) {
@@ -118,12 +116,12 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
   const auto v = choose_waves(waves, true, options, comtrade.file, problems);
   const auto i = choose_waves(waves, false, options, comtrade.file, problems);
   if (!(base.kv > 0))
-    problems.add("waveforms", comtrade.file, "the model names no base_kv for records",
+    problems.add("waveforms", comtrade.file, "the plant file has no base_kv under [record]",
                  "add base_kv (line to line) under [record] in the plant file");
   if (comtrade.nominal > 0 && std::abs(comtrade.nominal - base.frequency) > 0.5)
     problems.add(fmt::format("a record of a {:g} Hz grid", comtrade.nominal), comtrade.file,
                  fmt::format("the model is for {:g} Hz", base.frequency),
-                 "set frequency_hz in the plant file, or take that plant's own record");
+                 "set frequency_hz in the plant file, or use a record of this plant");
   // Phasors require evenly spaced samples, and a gap in waveforms is not interpolated.
   const EvenRows even = settle_rows({.t = comtrade.t,
                                      .resolution = comtrade.resolution,
@@ -141,7 +139,7 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
   const double sampled = t.size() > 1 ? 1 / (t[1] - t[0]) : 0;
   if (t.size() < 2)
     problems.add(fmt::format("waveforms of {} sample", t.size()), comtrade.file,
-                 "a phasor takes the samples of a cycle", "export the section around the event");
+                 "a phasor requires the samples of one cycle", "export the section around the event");
   else if (!(sampled >= kMinPerCycle * base.frequency))
     problems.add(fmt::format("waveforms at {:.4g} samples per second", sampled), comtrade.file,
                  fmt::format("a cycle needs at least {:g} samples", kMinPerCycle),

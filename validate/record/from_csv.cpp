@@ -58,9 +58,7 @@ class CsvReader {
  private:
   bool next(std::string_view& line) {
     while (!text_.empty()) {
-      const auto end = text_.find('\n');
-      line = text_.substr(0, end);
-      text_.remove_prefix(end == std::string_view::npos ? text_.size() : end + 1);
+      line = take_line(text_);
       ++number_;
       if (const auto content = unquoted(line); !content.empty() && content.front() != '#') return true;
     }
@@ -182,10 +180,9 @@ class CsvReader {
         value = h.name;
     }
     if (name.empty() || value.empty() || !options_.columns.empty()) return;
-    problems_.add(
-        "a tall table", where,
-        fmt::format("it has one measurement per line ('{}' is the name, '{}' the value)", name, value),
-        "export a column for each quantity and a line for each time (a pivot table)");
+    problems_.add("one measurement per line (long format)", where,
+                  fmt::format("'{}' is the name of the quantity, '{}' its value", name, value),
+                  "export a column for each quantity and a line for each time (a pivot table)");
     problems_.raise();
   }
 
@@ -210,9 +207,9 @@ class CsvReader {
       if (i == chosen) continue;
       headings_[i].meaning.reset();
       if (!is_charge(i))
-        about.notes.push_back(
-            fmt::format("Of the times '{}' and '{}' the first is read: --columns \"t=…\" chooses.",
-                        headings_[chosen].name, headings_[i].name));
+        about.notes.push_back(fmt::format(
+            "Of the time columns '{}' and '{}', the first is read; choose with --columns \"t=…\".",
+            headings_[chosen].name, headings_[i].name));
     }
   }
 
@@ -273,7 +270,7 @@ class CsvReader {
     const double part = ragged ? kNoValue : parse_number(cells_[*fraction_], top_.separator).value;
     if (!ragged && !std::isfinite(part))
       faults.add(headings_[*fraction_].name, fmt::format("'{}'", cells_[*fraction_]), sample,
-                 "this is no number", "export it again");
+                 "it is not a number", "export it again");
     fractions_.push_back(part);
   }
 
@@ -287,7 +284,7 @@ class CsvReader {
     const auto s = parse_stamp(cell);
     if (!s) {
       faults.add(column.name, fmt::format("{} = '{}'", column.name, cell), sample,
-                 "this is no time stamp like the ones before",
+                 "it is not a time stamp, unlike the rows before",
                  "cut the record before it, or export it again");
       return kNoValue;
     }
@@ -314,16 +311,16 @@ class CsvReader {
     else if (says_missing(cell))
       faults.add(column.name, what(), sample, "the value is missing", mend);
     else if (n.ambiguous)
-      faults.add(column.name, what(), sample, "the comma may divide thousands or decimals",
-                 "export it without marks of thousands, or with semicolons between the columns");
+      faults.add(column.name, what(), sample, "the comma may be a thousands separator or a decimal comma",
+                 "export without thousands separators, or with semicolons between the columns");
     else if (!n.ok && is_word(cell) && !time)
       take_word(column, cell, sample, faults);
     else if (!n.ok)
-      faults.add(column.name, what(), sample, "this is no number", mend);
+      faults.add(column.name, what(), sample, "it is not a number", mend);
     else if (!std::isfinite(n.value))
       faults.add(column.name, what(), sample, "the value is not finite", mend);
     else if (!time && is_code(n.value))
-      faults.lose(column.name, what(), sample, "instruments write this where a value is missing", mend);
+      faults.lose(column.name, what(), sample, "instruments write this code for a missing value", mend);
     else {
       if (time && n.decimals > 0) resolution_ = std::min(resolution_, std::pow(10.0, -n.decimals));
       return n.value;
@@ -333,7 +330,7 @@ class CsvReader {
 
   /// Treats a word in place of a number as a missing value, and counts it for a note.
   void take_word(const RawColumn& column, std::string_view cell, std::size_t sample, SampleFaults& faults) {
-    faults.lose(column.name, fmt::format("{} = '{}'", column.name, cell), sample, "this is no number",
+    faults.lose(column.name, fmt::format("{} = '{}'", column.name, cell), sample, "it is not a number",
                 "fill it at the source, cut the record before it, or export it again");
     if (words_.try_emplace(std::string(cell), 0).first->second++ == 0) word_at_.emplace(cell, lines_[sample]);
   }
@@ -341,16 +338,13 @@ class CsvReader {
   /// Computes UTC of the first stamp if its zone is known.
   void finish_beginning(RawRecord& raw) const {
     if (!first_ || first_->day == 0) return;
-    const auto time =
-        std::ranges::find(raw.columns, Quantity::time, [](const auto& c) { return c.meaning.quantity; });
-    const std::string heading = normalised(time->name);
+    const std::string heading = normalised(time_column(raw).name);
     if (first_->zoned || heading.find("utc") != std::string::npos || heading.find("gmt") != std::string::npos)
       raw.about.epoch = static_cast<double>(first_->day) * 86400 + first_->second;
   }
 
   void finish_times(RawRecord& raw) {
-    const auto time =
-        std::ranges::find(raw.columns, Quantity::time, [](const auto& c) { return c.meaning.quantity; });
+    RawColumn* time = &time_column(raw);
     const auto unit = time->meaning.unit;
     if (std::isfinite(resolution_))
       raw.time_resolution = resolution_;
@@ -380,7 +374,7 @@ class CsvReader {
       if (scale == 0 && most < clock && most >= 0.8 * clock) scale = 1 / clock;
     if (scale == 0 || most * scale > 1)
       problems_.add(fmt::format("column '{}'", name), name_,
-                    fmt::format("values of up to {:g}: how many make a second is not known", most),
+                    fmt::format("values of up to {:g}: the number of counts per second is unknown", most),
                     "name its unit, such as FRACSEC_us, or give the times in one column");
     if (most >= 1 && scale > 0) raw.time_resolution = scale;
     for (std::size_t k = 0; k < t.size() && k < fractions_.size(); ++k) t[k] += scale * fractions_[k];

@@ -50,7 +50,8 @@ class RunContents {
 
  private:
   [[noreturn]] void refuse() const {
-    throw InputError({"no run", file_.string(), "HDF5 records are runs written by swingbank simulate",
+    throw InputError({"not a run of swingbank simulate", file_.string(),
+                      "HDF5 records are runs written by swingbank simulate",
                       "give such a file, CSV or COMTRADE"});
   }
   std::filesystem::path file_;
@@ -84,7 +85,7 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
   const auto& shape = run.get<RunContents::Array>("/records").shape;
   if (shape.size() != 3 || shape[0] != plants.size() || shape[1] != channels.size() ||
       shape[2] != time.size() || mva.size() != plants.size() || plants.empty())
-    throw InputError({"a run whose parts do not fit", file.string(),
+    throw InputError({"inconsistent sizes of the arrays of a run", file.string(),
                       "/records must be plants x channels x samples", "simulate it again"});
   const std::size_t plant = choose_plant(plants, options.terminal, file.string());
   const std::size_t n = time.size();

@@ -15,6 +15,7 @@
 #include "base/read_apart.hpp"
 #include "base/sha256.hpp"
 #include "validate/record/detail/columns.hpp"
+#include "validate/record/detail/text.hpp"
 #include "validate/record/formats.hpp"
 #include "validate/record/mat_text.hpp"
 
@@ -263,7 +264,7 @@ class MatReader {
   [[nodiscard]] std::size_t time_rows(const std::string& asked) const {
     if (!other_times_.empty())
       refuse("signals with different times", "one record has one time vector",
-             "bring them to one time in MATLAB: resample or synchronize");
+             "resample them to common times in MATLAB (resample, synchronize)");
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const MatColumn& c = columns_[k];
       if (asked.empty() ? is_time(c.name)
@@ -298,11 +299,11 @@ class MatReader {
 std::string mat_text(const std::filesystem::path& file, const std::string& time) {
   const std::string name = file.string(), bytes = read_bytes(file);
   const auto broken = [&](const char* why) {
-    return InputError({"no readable MATLAB file", name, why, "copy or save it again"});
+    return InputError({"cannot read the MATLAB file", name, why, "copy or save it again"});
   };
-  if (is_cut_off(bytes)) throw broken("its last variable breaks off");
+  if (is_cut_off(bytes)) throw broken("the last variable is truncated");
   const std::unique_ptr<mat_t, int (*)(mat_t*)> mat(Mat_Open(name.c_str(), MAT_ACC_RDONLY), Mat_Close);
-  if (!mat) throw broken("it is cut short, or something else that is called .mat");
+  if (!mat) throw broken("the file is truncated, or is not a MATLAB file");
   MatReader reader(name);
   while (true) {
     const std::unique_ptr<matvar_t, void (*)(matvar_t*)> v(Mat_VarReadNext(mat.get()), Mat_VarFree);
@@ -320,11 +321,11 @@ Record read_mat_record(const std::filesystem::path& file, const RecordBase& base
   if (const auto asked = options.columns.find("t"); asked != options.columns.end())
     time.push_back(asked->second);
   const std::string text = read_apart("mat", file, time);
-  const auto line = text.find('\n');
-  Record record = parse_record(line == std::string::npos ? "" : text.substr(line + 1),
-                               fmt::format("columns of {}", file.filename().string()), base, options);
+  std::string_view rest = text;
+  const std::string_view format = take_line(rest);
+  Record record = parse_record(rest, fmt::format("columns of {}", file.filename().string()), base, options);
   record.sha256 = sha256(bytes);
-  record.format = text.substr(0, line);
+  record.format = format;
   return record;
 }
 

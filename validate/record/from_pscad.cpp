@@ -15,6 +15,7 @@
 #include "base/sha256.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/detail/phase.hpp"
+#include "validate/record/detail/text.hpp"
 #include "validate/record/formats.hpp"
 
 namespace swingbank::validate::record {
@@ -28,15 +29,6 @@ struct PscadChannel {
   std::string name, group, unit;
   int line = 0;
 };
-
-/// Removes the first line from `text` and returns it without its end.
-std::string_view take_line(std::string_view& text) {
-  const auto end = text.find('\n');
-  std::string_view line = text.substr(0, end);
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  return line;
-}
 
 /// Splits a line at blanks.
 void split_blanks(std::string_view line, std::vector<std::string_view>& cells) {
@@ -91,7 +83,7 @@ std::vector<PscadChannel> parse_inf(std::string_view text, const std::string& fi
     if (std::regex_search(line, match, of_group)) c.group = match[1];
     if (std::regex_search(line, match, of_unit)) c.unit = match[1];
     if (const auto [before, added] = all.emplace(c.number, c); !added)
-      problems.add(fmt::format("PGB({}) again", c.number), where,
+      problems.add(fmt::format("PGB({}) twice", c.number), where,
                    fmt::format("line {} has this number", before->second.line),
                    "run the case again, so that PSCAD writes the file");
   }
@@ -146,11 +138,13 @@ class OutReader {
         row();
     }
     if (wrong_ > 0)
-      problems_.add(fmt::format("{} columns in {} {}", width_seen_, wrong_, wrong_ == 1 ? "row" : "rows"),
-                    fmt::format("{}:{}", part_.file, first_wrong_),
-                    fmt::format("the .inf lists {} channels of this file, and the time is before them",
-                                part_.width - 1),
-                    "run the case again, so that the .inf and the .out files belong together");
+      problems_.add(
+          fmt::format("{} columns in {} {}", width_seen_, wrong_, wrong_ == 1 ? "row" : "rows"),
+          fmt::format("{}:{}", part_.file, first_wrong_),
+          fmt::format("the .inf lists {} channels of this file, so it must have {} columns including "
+                      "the time",
+                      part_.width - 1, part_.width),
+          "run the case again, so that the .inf and the .out files belong together");
     for (std::size_t c = 0; c < runs_.size(); ++c) report(c);
   }
 
@@ -169,7 +163,7 @@ class OutReader {
     const auto t = fortran_number(cells_[0]);
     if (!t || !std::isfinite(*t)) {
       problems_.add(fmt::format("time = '{}'", cells_[0]), fmt::format("{}:{}", part_.file, number_),
-                    "this is no number", "run the case again");
+                    "it is not a number", "run the case again");
       return;
     }
     part_.t.push_back(*t);
@@ -196,9 +190,9 @@ class OutReader {
       problems_.add(fmt::format("{} = '{}'", name, run.cell),
                     run.first == run.last ? fmt::format("{}:{}", part_.file, run.first)
                                           : fmt::format("{}:{}-{}", part_.file, run.first, run.last),
-                    more > 0 ? fmt::format("the value is not finite, and so in {} further places", more)
+                    more > 0 ? fmt::format("the value is not finite, here and in {} further places", more)
                              : "the value is not finite",
-                    "correct the case, or read up to there with --until");
+                    "correct the case, or end before it with --until");
     }
   }
 

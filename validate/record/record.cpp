@@ -69,7 +69,7 @@ Record read_parts(const Source& source, const RecordBase& base, const ReadOption
 }  // namespace
 
 std::string read_bytes(const std::filesystem::path& file) {
-  return read_input(file, "no readable record", "give the path of a record");
+  return read_input(file, "cannot read the record", "give the path of a record");
 }
 
 std::string_view component_name(Component component) {
@@ -102,6 +102,9 @@ Record read_staged(const Source& source, const RecordBase& base, ReadOptions opt
                        [&](const StagedEvent& e) { return e.applies_to(source); });
   const bool open = std::ranges::any_of(
       staged, [](const StagedEvent& e) { return e.kind == StagedEvent::Kind::open_circuit; });
+  options.breaker_opens = options.component != Component::exciter &&
+                          options.component != Component::governor &&
+                          std::ranges::any_of(staged, &StagedEvent::opens_breaker);
   if (open) {
     options.power = false;
     std::erase_if(options.needed, [](const auto& any) {
@@ -117,8 +120,6 @@ Record read_staged(const Source& source, const RecordBase& base, ReadOptions opt
     r.speed = r.f;
     r.notes.emplace_back("The frequency is used as the speed, because no grid is connected to the machine.");
   }
-  if (r.angle != AngleSource::measured)
-    std::erase_if(r.notes, [](const std::string& note) { return note.starts_with("The record has n"); });
   return r;
 }
 
@@ -213,7 +214,7 @@ void unwrap(std::vector<double>& angle) {
 
 std::string beginning(const Record& record) {
   if (record.epoch) return utc_text(*record.epoch);
-  return record.start.empty() ? std::string() : record.start + " (as written; its zone is not known)";
+  return record.start.empty() ? std::string() : record.start + " (time zone unknown)";
 }
 
 Record read_record(const Source& source, const RecordBase& base, const ReadOptions& options) {

@@ -83,7 +83,11 @@ struct Record {
   std::string start;               ///< time stamp of t = 0 as written, if any
   std::optional<double> epoch;     ///< UTC of t = 0 [s since 1970-01-01], if known
   std::vector<std::string> notes;  ///< changes made on reading that affect the interpretation of results
-  std::vector<double> theta_as_written;       ///< [rad], before unwrapping; empty if the angle was computed
+  std::vector<double> theta_as_written;  ///< [rad], before unwrapping; empty if the angle was computed
+  /// Returns the angle before unwrapping; that of `theta` if it was computed.
+  [[nodiscard]] const std::vector<double>& written_angle() const {
+    return theta_as_written.empty() ? theta : theta_as_written;
+  }
   AngleSource angle = AngleSource::measured;  ///< source of theta
   bool per_unit_power = true;              ///< P and Q, or the current, were written in pu; false: in MW or A
   std::vector<std::string> named;          ///< quantities whose column was chosen by ReadOptions::columns
@@ -143,6 +147,8 @@ struct ReadOptions {
   std::vector<std::vector<std::string>> needed = {};
   std::vector<StagedEvent> staged = {};  ///< staged events of all records of the plant
   bool angle = false;  ///< a measured angle is required; false: it may be integrated from f, or be missing
+  /// The breaker opens, so the playback needs no angle and a missing angle is not noted; read_staged sets it.
+  bool breaker_opens = false;
 };
 
 /// Reads a record from its source. The extension determines the format: .cfg/.dat or .cff COMTRADE, .mat

@@ -340,7 +340,7 @@ TEST(StampTest, AcceptsClockSetBack) {
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 300);
   EXPECT_NEAR(r.rate(), 30, 1e-6);
-  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("r.csv:152"), HasSubstr("put back by 1 s"))));
+  EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("r.csv:152"), HasSubstr("set back by 1 s"))));
 }
 TEST(StampTest, RefusesUnorderedRows) {
   const auto text = table(kHeader, 300, [](int k) {
@@ -405,7 +405,7 @@ TEST(FormatTest, NamesIgnoredColumns) {
   EXPECT_THAT(of("PK\x03\x04rest", "r.xlsx"), ElementsAre(HasSubstr("spreadsheet")));
   EXPECT_THAT(of("anything", "run.out"), ElementsAre(AllOf(HasSubstr("PSS/E"), HasSubstr("dyntools"))));
   EXPECT_THAT(of("anything", "RUN.OUTX"), ElementsAre(HasSubstr("PSS/E")));
-  EXPECT_THAT(of(std::string("ab\0cd\1\2\3 and more of it", 24), "r.bin"), ElementsAre(HasSubstr("no text")));
+  EXPECT_THAT(of(std::string("ab\0cd\1\2\3 and more of it", 24), "r.bin"), ElementsAre(HasSubstr("a binary file")));
 }
 TEST(FormatTest, TextOfOtherEncodings) {
   const auto text = table("Zeit,U (kV),P (MW),Q (Mvar),f (Hz),K\xFChlung\n", 60,

@@ -64,7 +64,7 @@ TEST(ZeroFrameTest, LongGapsOfZerosAreRefused) {
       frame_faults(frames([](int k) {
         return k >= 150 && k < 160 ? fmt::format("{:.7f},0,0,0,0\n", k / 30.0) : frame(k, k / 30.0) + "\n";
       })),
-      Contains(AllOf(HasSubstr("V_pu = 0"), HasSubstr("r.csv:152-161"), HasSubstr("no measurement"))));
+      Contains(AllOf(HasSubstr("V_pu = 0"), HasSubstr("r.csv:152-161"), HasSubstr("not a measurement"))));
 }
 TEST(RepeatedBlockTest, OfOverlappingArchivesIsDropped) {
   const Record r = parse_record(frames([](int k) {
@@ -165,7 +165,7 @@ TEST(UnitTest, SpellingsOfPmusAndHistorians) {
 TEST(OtherFileTest, NamesTheFileType) {
   EXPECT_THAT(frame_faults("SignalID,Timestamp,Value\nPPA:1,2026-03-01 14:05:20.000,339.5\n"
                            "PPA:2,2026-03-01 14:05:20.000,-0.18\n"),
-              ElementsAre(AllOf(HasSubstr("a tall table"), HasSubstr("'SignalID'"),
+              ElementsAre(AllOf(HasSubstr("(long format)"), HasSubstr("'SignalID'"),
                                 HasSubstr("a column for each quantity"))));
   EXPECT_THAT(frame_faults("PK\x03\x04zipped record", "ev.zip"),
               ElementsAre(AllOf(HasSubstr("a zip archive"), HasSubstr("unpack"))));

@@ -124,7 +124,7 @@ TEST(RecordComtradeTest, TimesFromStamps) {
 TEST(RecordComtradeTest, NotesContradictingStampsAndRate) {
   Writer w = phasors();
   w.edit = [](auto& lines) { lines[9] = "30,90"; };
-  EXPECT_THAT(w.read().notes, Contains(HasSubstr("the rate was taken")));
+  EXPECT_THAT(w.read().notes, Contains(HasSubstr("the rate was used")));
 }
 
 /// A recorder with a fast rate after the trigger and a slow one later: evenly spaced values keep their times.
@@ -194,11 +194,11 @@ TEST(RecordComtradeTest, FaultsOfTheData) {
   std::string gap = w.dat();
   gap.erase(18 * 40, 18 * 2);
   EXPECT_THAT(read(gap), ElementsAre(AllOf(HasSubstr("sample number 43"), HasSubstr("bytes 720-737"),
-                                           HasSubstr("41 was"))));
+                                           HasSubstr("expected 41"))));
   w = phasors(1999, "ASCII");
   std::string broken = w.dat();
   broken.replace(broken.find(",", broken.find("\n40,") + 8), 2, ",x");
-  EXPECT_THAT(read(broken), ElementsAre(AllOf(HasSubstr("no number"), HasSubstr("e.dat:40"))));
+  EXPECT_THAT(read(broken), ElementsAre(AllOf(HasSubstr("not a number"), HasSubstr("e.dat:40"))));
 }
 TEST(RecordComtradeTest, MarkedSamplesAreMissing) {
   for (const auto& [revision, kind] :
@@ -224,7 +224,7 @@ TEST(RecordComtradeTest, RefusesUnusableWaveforms) {
   EXPECT_THAT(waveforms({}, 240, 240).faults(), Contains(HasSubstr("at least 8 samples")));
   w = waveforms({});
   w.samples = 1;
-  EXPECT_THAT(w.faults(), Contains(HasSubstr("a phasor takes the samples of a cycle")));
+  EXPECT_THAT(w.faults(), Contains(HasSubstr("a phasor requires the samples of one cycle")));
 }
 
 class ComtradeFileTest : public ::testing::Test {

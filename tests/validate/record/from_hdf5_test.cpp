@@ -76,9 +76,9 @@ TEST_F(RecordHdf5Test, SeveralPlantsOrNoSuchPlant) {
 }
 TEST_F(RecordHdf5Test, RefusesFilesWithoutARun) {
   write("swingbank-run-2");
-  EXPECT_THAT(faults("#GENROU 7"), ElementsAre(HasSubstr("no run")));
+  EXPECT_THAT(faults("#GENROU 7"), ElementsAre(HasSubstr("not a run of swingbank simulate")));
   write("swingbank-run-1", 4);
-  EXPECT_THAT(faults("#GENROU 7"), ElementsAre(HasSubstr("parts do not fit")));
+  EXPECT_THAT(faults("#GENROU 7"), ElementsAre(HasSubstr("inconsistent sizes")));
   EXPECT_THAT(faults("-missing.h5"), ElementsAre(HasSubstr("run.h5-missing.h5")));
 }
 

@@ -179,7 +179,7 @@ TEST_F(RecordPscadTest, RefusesFaultyList) {
   write_case();
   write("case.inf",
         "PGB(1) Output Desc=\"V\" Units=\"pu\"\nPGB(1) Output Desc=\"P\"\nPGB(0) Output Desc=\"Q\"\n");
-  EXPECT_THAT(complaints(), ElementsAre(AllOf(HasSubstr("PGB(1) again"), HasSubstr("case.inf:2")),
+  EXPECT_THAT(complaints(), ElementsAre(AllOf(HasSubstr("PGB(1) twice"), HasSubstr("case.inf:2")),
                                         AllOf(HasSubstr("without number"), HasSubstr("case.inf:3"))));
   write("case.inf", "nothing\n");
   EXPECT_THAT(complaints(), ElementsAre(HasSubstr("no channels")));

@@ -89,7 +89,7 @@ TEST(RecordTest, ReportsEveryFaultWithItsLine) {
     if (k == 30) line = "0.2,1.01,0.1,0.5,0.2";
   });
   const auto all = faults_of(text);
-  EXPECT_THAT(all, Contains(AllOf(HasSubstr("'x5'"), HasSubstr("r.csv:6"), HasSubstr("no number"))));
+  EXPECT_THAT(all, Contains(AllOf(HasSubstr("'x5'"), HasSubstr("r.csv:6"), HasSubstr("not a number"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("4 values"), HasSubstr("r.csv:10"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("r.csv:21"), HasSubstr("repeated"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("r.csv:31"), HasSubstr("backwards"))));

@@ -25,7 +25,7 @@ TEST(RecorderFiles, AreRead) {
   EXPECT_TRUE(problems.empty());
   ASSERT_EQ(first.stretches.size(), 1);
   EXPECT_NEAR(first.stretches[0].rate, 2401, 3);
-  EXPECT_THAT(first.notes, Contains(HasSubstr("put onto an even")));
+  EXPECT_THAT(first.notes, Contains(HasSubstr("resampled uniformly")));
   const Comtrade second = read("2.cfg", "2.dat"), fourth = read("4.CFG", "4.DAT");
   EXPECT_EQ(second.channels.size(), 55);
   EXPECT_THAT(second.notes,

@@ -87,7 +87,8 @@ TEST(RecorderLeniency, TakesDataTypeFromTheData) {
       EXPECT_LT(phasor_error(r), kRounding) << kind << " named " << named;
       EXPECT_EQ(r.format, fmt::format("COMTRADE 2013 {}", kind));
       if (std::string(kind) != named)
-        EXPECT_THAT(r.notes, Contains(HasSubstr(fmt::format("data type {}, the data are {}", named, kind))));
+        EXPECT_THAT(r.notes,
+                    Contains(HasSubstr(fmt::format("data type {}, but the data are {}", named, kind))));
       else
         EXPECT_THAT(r.notes, Each(Not(HasSubstr("data type"))));
     }
@@ -100,7 +101,7 @@ TEST(RecorderLeniency, AcceptsOverflowingTimeStamps) {
     const Record r = w.read();
     EXPECT_NEAR(r.rate(), 60, 1e-3) << kind;
     EXPECT_LT(phasor_error(r), kRounding) << kind;
-    EXPECT_THAT(r.notes, Contains(HasSubstr("pass 2^32")));
+    EXPECT_THAT(r.notes, Contains(HasSubstr("overflow at 2^32")));
   }
 }
 TEST(RecorderLeniency, RefusesRateAndStampsInDifferentUnits) {
@@ -132,7 +133,7 @@ TEST(RecorderWaves, VoltagesBetweenPhases) {
     EXPECT_LT(largest_error(between_phases({}, pairs).read(), {}), 1e-5);
     EXPECT_LT(largest_error(between_phases({}, pairs, true).read(), {}), 1e-5);
   }
-  EXPECT_THAT(between_phases({}, {0, 1, 2}).read().notes, Contains(HasSubstr("over sqrt(3)")));
+  EXPECT_THAT(between_phases({}, {0, 1, 2}).read().notes, Contains(HasSubstr("divided by sqrt(3)")));
   EXPECT_THAT(between_phases({}, {0, 1}).read().notes, Contains(HasSubstr("voltage CA is not recorded")));
   EXPECT_THAT(between_phases({}, {0}).faults(),
               ElementsAre(AllOf(HasSubstr("no three-phase voltage"), HasSubstr("the voltages are VAB"))));
@@ -195,7 +196,7 @@ TEST(RecorderWaves, PhaseSequenceIsNamed) {
   w = waveforms({});
   const auto value = w.channels[3].value;
   w.channels[3].value = [=](double t) { return -value(t); };
-  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("IB has the other sign than IC and IA"))));
+  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("IB has the opposite sign of IC and IA"))));
 }
 
 }  // namespace

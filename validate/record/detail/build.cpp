@@ -92,11 +92,7 @@ void convert(RawRecord& raw, const RecordBase& base) {
   }
 }
 
-RawColumn& time_of(RawRecord& raw) {
-  return *std::ranges::find(raw.columns, Quantity::time,
-                            [](const RawColumn& c) { return c.meaning.quantity; });
-}
-std::vector<double>& times_of(RawRecord& raw) { return time_of(raw).values; }
+std::vector<double>& times_of(RawRecord& raw) { return time_column(raw).values; }
 
 /// Shifts times above 1e6 s to begin at zero, because reports cannot display seconds since 1970.
 void begin_at_zero(RawRecord& raw, Record& about) {
@@ -131,9 +127,7 @@ void cut_rows(RawRecord& raw, const ReadOptions& options, SampleFaults& faults) 
 /// For a component, and for one of several joined files, every column is required.
 bool is_required(const RawRecord& raw, const ReadOptions& options, Quantity q) {
   if (options.part || options.component != Component::plant) return true;
-  const auto has = [&](Quantity wanted) {
-    return std::ranges::any_of(raw.columns, [&](const RawColumn& c) { return c.meaning.quantity == wanted; });
-  };
+  const auto has = [&](Quantity wanted) { return find_column(raw, wanted) != nullptr; };
   if (q == Quantity::V || q == Quantity::theta) return true;
   if (has(Quantity::theta)) return false;
   return q == Quantity::f || (!has(Quantity::f) && (q == Quantity::P || q == Quantity::Q));
@@ -265,7 +259,7 @@ std::vector<char> fill_channels(RawRecord& raw, const EvenRows& rows, Record& r)
 
 /// Integrates the frequency if no angle was recorded. Without a frequency, and for an exciter or governor,
 /// the angle is zero and its source is AngleSource::none.
-void settle_angle(Record& r) {
+void settle_angle(Record& r, const ReadOptions& options) {
   if (!r.theta.empty()) return;
   if (r.component == Component::exciter || r.component == Component::governor) {
     r.theta.assign(r.t.size(), 0.0);
@@ -275,19 +269,21 @@ void settle_angle(Record& r) {
   if (!r.f.empty()) {
     r.theta = angle_of_frequency(r);
     r.angle = AngleSource::integrated;
-    r.notes.emplace_back(
-        "The record has no angle: it was integrated from the frequency. A measured frequency "
-        "shows the angle step at a switching late, smoothed or not at all; the angle steps are "
-        "therefore fitted. If the instrument filters the frequency, the angle lags: effect FREQLAG removes "
-        "the lag.");
+    if (!options.breaker_opens)
+      r.notes.emplace_back(
+          "The record has no angle: it was integrated from the frequency. A measured frequency "
+          "shows the angle step at a switching late, smoothed or not at all; the angle steps are "
+          "therefore fitted. If the instrument filters the frequency, the angle lags: effect FREQLAG removes "
+          "the lag.");
     return;
   }
   r.theta.assign(r.t.size(), 0.0);
   r.angle = AngleSource::none;
-  r.notes.emplace_back(
-      "The record has neither angle nor frequency. The voltage magnitude alone is insufficient "
-      "for a playback, so P and Q are played in and V is compared; nominal frequency before "
-      "the event is assumed.");
+  if (!options.breaker_opens)
+    r.notes.emplace_back(
+        "The record has neither angle nor frequency. The voltage magnitude alone is insufficient "
+        "for a playback, so P and Q are played in and V is compared; nominal frequency before "
+        "the event is assumed.");
   if (!r.Efd.empty())
     r.notes.emplace_back(
         "An exciter alone needs no angle, and Efd is recorded: test it with --component exciter.");
@@ -299,8 +295,8 @@ void take_over(Record& from, Record& all, const std::string& files, Problems& pr
   const double first = std::max(all.t.front(), from.t.front()), last = std::min(all.t.back(), from.t.back());
   if (!(last - first > all.step() * kMinSamples)) {
     problems.add("files that do not overlap", files,
-                 fmt::format("one is of {:.6g} to {:.6g} s, another of {:.6g} to {:.6g} s", all.t.front(),
-                             all.t.back(), from.t.front(), from.t.back()),
+                 fmt::format("one file covers t = {:.6g} to {:.6g} s, another {:.6g} to {:.6g} s",
+                             all.t.front(), all.t.back(), from.t.front(), from.t.back()),
                  "give files of one event, with one clock");
     return;
   }
@@ -417,8 +413,8 @@ void SampleFaults::report(Problems& problems, const std::string& file) const {
                  n > 1 ? fmt::format("{}; {} samples in a row", f.why, n) : f.why, f.remedy);
   }
   if (faults_.size() > kShown)
-    problems.add(fmt::format("{} further faults", faults_.size() - kShown), file, "the list is cut here",
-                 "correct the ones above first");
+    problems.add(fmt::format("{} further faults", faults_.size() - kShown), file,
+                 fmt::format("only the first {} faults are listed", kShown), "correct the ones above first");
 }
 
 Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& options, SampleFaults faults,
@@ -437,7 +433,7 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
   r.per_unit_power = per_unit_power;
   begin_at_zero(raw, r);
   cut_rows(raw, options, faults);
-  if (!raw.uneven && check_clock(times_of(raw), time_of(raw).meaning, options, file, problems))
+  if (!raw.uneven && check_clock(times_of(raw), time_column(raw).meaning, options, file, problems))
     problems.raise();
   const EvenRows rows = settle(raw, options, r, faults);
   faults.report(problems, file);
@@ -455,7 +451,7 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
   for (std::size_t k = 0; k < unmeasured.size(); ++k) r.lost[k] = r.lost[k] || unmeasured[k];
   r.component = options.component;
   if (options.part) return r;
-  settle_angle(r);
+  settle_angle(r, options);
   return r;
 }
 
@@ -469,13 +465,14 @@ Record join_records(std::vector<Record> parts, const ReadOptions& options, const
     if (i != first) take_over(parts[i], all, files, problems);
   for (const auto& [word, column] : options.columns)
     if (std::ranges::find(all.named, word) == all.named.end())
-      problems.add(fmt::format("no column '{}'", column), files,
-                   "the map of columns names it for " + word + ", and none of the files has it",
-                   "name one that is there");
+      problems.add(
+          fmt::format("no column '{}'", column), files,
+          "--columns or [record.columns] assigns it to " + word + ", but none of the files contains it",
+          "name an existing column");
   const auto needs = [&](const std::vector<double>& channel, const char* what) {
     if (channel.empty())
-      problems.add(fmt::format("no column of {}", what), files, "none of the files gives it",
-                   "add a file that has it, or say which column it is: --columns");
+      problems.add(fmt::format("no column of {}", what), files, "none of the files contains it",
+                   "add a file that contains it, or assign a column with --columns");
   };
   if (options.component == Component::plant) {
     needs(all.V, "V");
@@ -489,7 +486,7 @@ Record join_records(std::vector<Record> parts, const ReadOptions& options, const
         }))
       needs({}, words.front().c_str());
   problems.raise();
-  settle_angle(all);
+  settle_angle(all, options);
   if (all.component == Component::governor && all.V.empty()) all.V.assign(all.t.size(), 1.0);
   return stretch(std::move(all), options.from, options.until);
 }

@@ -70,6 +70,16 @@ struct RawRecord {
   Record about;                ///< name, format, terminal, start, ignored, notes
 };
 
+/// Returns the first column of the quantity; nullptr if there is none.
+template <class Raw>
+auto find_column(Raw& raw, Quantity q) -> decltype(raw.columns.data()) {
+  for (auto& c : raw.columns)
+    if (c.meaning.quantity == q) return &c;
+  return nullptr;
+}
+/// Returns the column of the times, which every raw record has.
+inline RawColumn& time_column(RawRecord& raw) { return *find_column(raw, Quantity::time); }
+
 /// Returns the indices of the columns to read, in the file's order. Sets the meaning of the columns named in
 /// options.columns, and adds unknown columns to `about.ignored`. Of several terminals, it chooses the
 /// requested one or the only complete one. If the voltage is measured at one terminal and the power or

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "validate/record/detail/columns.hpp"
+#include "validate/record/detail/text.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -77,9 +78,7 @@ std::string plain(std::string_view cell, char separator, Number& n) {
 bool by_blanks(std::string_view text) {
   int found = 0;
   for (int n = 0; n < 50 && !text.empty(); ++n) {
-    const auto end = text.find('\n');
-    const std::string_view line = unquoted(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view line = unquoted(take_line(text));
     if (line.empty() || line.find_first_of(",;\t") != std::string_view::npos) continue;
     const Cells cells = split(line, ' ');
     if (cells.size() >= 3 && std::ranges::all_of(cells, [](auto c) { return parse_number(c, ' ').ok; }) &&
@@ -100,12 +99,7 @@ char separator_of(std::string_view line) {
 
 }  // namespace
 
-std::string_view unquoted(std::string_view s) {
-  constexpr std::string_view blank = " \t\r\"";
-  const auto first = s.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return s.substr(first, s.find_last_not_of(blank) - first + 1);
-}
+std::string_view unquoted(std::string_view s) { return trimmed(s, " \t\r\""); }
 
 Cells split(std::string_view line, char separator) {
   Cells cells;
@@ -194,9 +188,7 @@ TableTop find_top(std::string_view text, const ColumnMap& columns) {
   };
   int first = -1;
   for (int n = 0; n < kLinesOfTop && !text.empty(); ++n) {
-    const auto end = text.find('\n');
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    const std::string_view line = take_line(text);
     const std::string_view content = unquoted(line);
     if (content.empty() || content.front() == '#') continue;
     for (const char separator : {',', ';', '\t', ' '}) {

@@ -11,6 +11,7 @@
 
 #include "validate/record/detail/build.hpp"
 #include "validate/record/detail/phases.hpp"
+#include "validate/record/detail/text.hpp"
 
 namespace swingbank::validate::record {
 namespace {
@@ -125,7 +126,7 @@ Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptio
     if (!all.contains(asked))
       problems.add("no terminal '" + asked + "'", where,
                    all.empty() ? "the file names no terminals" : "the file has " + listed(all),
-                   all.empty() ? "leave '#" + asked + "' off the file's name" : "choose one of them");
+                   all.empty() ? "remove '#" + asked + "' from the file name" : "choose one of them");
     return {asked, asked, false};
   }
   if (options.part && all.size() == 1) return {*all.begin(), *all.begin(), false};
@@ -141,16 +142,16 @@ Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptio
   if (!complete.empty()) return {*complete.begin(), *complete.begin(), false};
   if (const auto both = two_devices(headings, all)) {
     if (both->voltage != both->power && !both->voltage.empty() && !both->power.empty() && options.power)
-      about.notes.push_back(fmt::format(
-          "The voltage is that of {}, the power that of {}: no other columns of the file give them.",
-          both->voltage, both->power));
+      about.notes.push_back(
+          fmt::format("Voltage was read from terminal {}, power from terminal {}: only these provide them.",
+                      both->voltage, both->power));
     return *both;
   }
   if (!options.part)
     problems.add("no complete terminal", where,
-                 "of " + listed(all) + " none has voltage" +
+                 "none of the terminals " + listed(all) + " has voltage" +
                      (options.power ? ", P and Q (or current and its angle)" : " and time") +
-                     ", and their grouping is ambiguous; columns found: " + seen(headings),
+                     ", and it is ambiguous which of them belong together; columns found: " + seen(headings),
                  "name the columns: --columns V=…,P=…,Q=… or [record.columns] in the plant file");
   return {*all.begin(), *all.begin(), false};
 }
@@ -179,12 +180,6 @@ void check_missing(const Present& present, const ReadOptions& options, const std
             "; columns found: " + seen(headings),
         "add the column, named with its unit, or say which one it is: --columns V=…,P=… or "
         "[record.columns] in the plant file");
-}
-
-std::string_view trimmed(std::string_view s) {
-  while (!s.empty() && s.front() == ' ') s.remove_prefix(1);
-  while (!s.empty() && s.back() == ' ') s.remove_suffix(1);
-  return s;
 }
 
 /// Returns the index of the heading that the user's text identifies. The text is "#3" (the third column), the
@@ -262,10 +257,10 @@ class Mapper {
     }
     if (!at) {
       if (!options_.part)
-        problems_.add(
-            fmt::format("no column '{}'", named.name), where_,
-            fmt::format("the map of columns names it for {}; columns found: {}", word, seen(headings_)),
-            "name one of them (and its terminal, where two have the same name)");
+        problems_.add(fmt::format("no column '{}'", named.name), where_,
+                      fmt::format("--columns or [record.columns] assigns it to {}; columns found: {}", word,
+                                  seen(headings_)),
+                      "name one of them; if two columns have the same name, add the terminal");
       return std::nullopt;
     }
     const Heading& h = headings_[*at];
@@ -389,7 +384,7 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
                    "name it one of " + names_of(meaning->quantity) + ", or give the unit: --columns \"" +
                        std::string(word_of(meaning->quantity)) + "=" + name + " [unit]\"");
     else if (meaning->unit && needs_kv(meaning->quantity, *meaning->unit) && !(base.kv > 0))
-      problems.add(fmt::format("column '{}'", name), where, "the model names no base_kv for records",
+      problems.add(fmt::format("column '{}'", name), where, "the plant file has no base_kv under [record]",
                    "add base_kv under [record] in the plant file, or give per-unit values");
     const auto key = meaning->unit ? needs_base(meaning->quantity, *meaning->unit) : "";
     if (!key.empty() && !((meaning->quantity == Efd ? base.efd : base.ifd) > 0)) {
@@ -400,7 +395,7 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
         continue;
       }
       problems.add(fmt::format("column '{}'", name), where,
-                   "the plant file does not define 1 pu (air-gap line) of it",
+                   "the plant file does not state its value at 1 pu (air-gap line)",
                    fmt::format("add {} = … [{}] under [record] in the plant file, or give per-unit values",
                                key, meaning->quantity == Efd ? "V" : "A"));
     }

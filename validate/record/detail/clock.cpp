@@ -29,11 +29,6 @@ constexpr Clock kUnix[] = {
     {7e17, 5e18, Unit::nanosecond, 0, "nanoseconds since 1970"},
 };
 
-RawColumn& time_column(RawRecord& raw) {
-  return *std::ranges::find(raw.columns, Quantity::time,
-                            [](const RawColumn& c) { return c.meaning.quantity; });
-}
-
 /// Returns the 10 % quantile of the positive steps; NaN if there are none. Longer steps are not
 /// representative of simulations with variable steps.
 double usual_step(const std::vector<double>& t) {
@@ -111,14 +106,14 @@ bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const 
     if (other != smaller.end() && time.unit == Unit::second)
       problems.add(
           fmt::format("steps of {:.4g} s", step), file,
-          fmt::format("a record of {:.3g} samples/s shows no swing; in {} these would be {:.4g} samples/s",
+          fmt::format("no swing is visible at {:.3g} samples/s; with times in {} the rate would be {:.4g} "
+                      "samples/s",
                       1 / step, other->name, 1 / (step * other->factor)),
           fmt::format("are the times in {}? Name the column {}, or say so: --columns \"t=NAME [{}]\"",
                       other->name, other->column, other->column.substr(2)));
     else
       problems.add(
-          fmt::format("{:.3g} samples/s", 1 / step), file,
-          "a swing of 1 Hz needs at least 10 samples/s: what happens between these samples is not known",
+          fmt::format("{:.3g} samples/s", 1 / step), file, "a swing of 1 Hz needs at least 10 samples/s",
           "give the record of a phasor measurement unit or fault recorder, at 10 to 120 samples/s, or "
           "check the unit of the times");
     return true;
@@ -130,7 +125,7 @@ bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const 
   const double factor = time.unit == Unit::millisecond ? 1e3 : time.unit == Unit::microsecond ? 1e6 : 1e9;
   if (!plausible(step * factor)) return false;
   problems.add(fmt::format("{:.3g} s", length), file,
-               fmt::format("the record is too short; in seconds its times would be {:.4g} samples/s",
+               fmt::format("the record is too short; with times in s the rate would be {:.4g} samples/s",
                            1 / (step * factor)),
                "are the times in s? Name the column t_s; otherwise give a longer record");
   return true;

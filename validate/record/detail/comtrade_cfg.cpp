@@ -15,12 +15,7 @@
 namespace swingbank::validate::record {
 namespace {
 
-std::string_view trim(std::string_view s) {
-  constexpr std::string_view blank = " \t\r\x1a";
-  const auto first = s.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return s.substr(first, s.find_last_not_of(blank) - first + 1);
-}
+std::string_view trim(std::string_view s) { return trimmed(s, " \t\r\x1a"); }
 
 class Config {
  public:
@@ -48,7 +43,7 @@ class Config {
       ended_ = true;
       return {};
     }
-    return comtrade_fields(comtrade_line(rest_));
+    return comtrade_fields(take_line(rest_));
   }
   void fault(std::string what, std::string why, std::string remedy) {
     if (ended_) return;  // a single message for a truncated file
@@ -58,7 +53,7 @@ class Config {
   double number(const Fields& fields, std::size_t i, const char* what) {
     const auto v = i < fields.size() ? comtrade_number(fields[i]) : std::nullopt;
     if (!v)
-      fault(fmt::format("{} = '{}'", what, i < fields.size() ? fields[i] : ""), "this is no number",
+      fault(fmt::format("{} = '{}'", what, i < fields.size() ? fields[i] : ""), "it is not a number",
             "export the configuration again");
     return v.value_or(0);
   }
@@ -78,9 +73,9 @@ class Config {
     const bool between = year > 1991 && year<2013, later = year> 2013 && year < 2100;
     c_.about.revision = year == 1991 ? 1991 : between ? 1999 : later || year == 2013 ? 2013 : 0;
     if (c_.about.revision != 0 && c_.about.revision != year)
-      c_.about.notes.push_back(
-          fmt::format("The configuration names the revision {:.0f}, which there is not: it was read as {}.",
-                      year, c_.about.revision));
+      c_.about.notes.push_back(fmt::format(
+          "The configuration states revision {:.0f}, which does not exist; it was read as revision {}.", year,
+          c_.about.revision));
     if (c_.about.revision == 0)
       fault(fmt::format("revision '{}'", f[2]), "1991, 1999 and 2013 are read",
             "export it as COMTRADE 1999 or 2013");
@@ -122,13 +117,15 @@ class Config {
     const bool old = c_.about.revision == 1991 && f.size() < kFields;  // no ratio and side of the transformer
     if (f.size() < (old ? kFieldsOf1991 : kFields)) {
       fault(fmt::format("analogue channel with {} fields", f.size()),
-            fmt::format("there must be {}", old ? kFieldsOf1991 : kFields), "export the configuration again");
+            fmt::format("expected {} fields", old ? kFieldsOf1991 : kFields),
+            "export the configuration again");
       return;
     }
     const double numbered = number(f, 0, "channel number");
     if (numbered <= last_channel_)
       fault(fmt::format("channel number '{}'", f[0]),
-            fmt::format("channel {:g} came before it", last_channel_), "export the configuration again");
+            fmt::format("it follows channel {:g}; numbers must increase", last_channel_),
+            "export the configuration again");
     if (numbered > last_channel_ + 1)
       c_.about.notes.push_back(
           fmt::format("Channel numbers skip from {:g} to {:g} ({}:{}): the values follow the lines.",
@@ -164,7 +161,7 @@ class Config {
     c_.about.nominal = number(next(), 0, "line frequency");
     const double n = number(next(), 0, "number of sampling rates");
     if (!(n >= 0 && n < 1000)) {
-      fault("the number of sampling rates", "0 to 999 make sense", "export the configuration again");
+      fault("the number of sampling rates", "it must be 0 to 999", "export the configuration again");
       return;
     }
     for (int k = 0; k < std::max(1.0, n) && !ended_; ++k) {
@@ -173,17 +170,20 @@ class Config {
       const double rate = number(f, 0, "sampling rate"), last = number(f, 1, "last sample");
       const bool backwards = last <= static_cast<double>(c_.samples);
       if (rate < 0 || (n > 1 && rate == 0) || last < 1 || last > 1e9 || backwards)
-        fault(fmt::format("rate {:g}, last sample {:g}", rate, last),
-              backwards && c_.samples > 0 ? fmt::format("the rate before it lasts to sample {}", c_.samples)
-                                          : "neither can be",
-              "export the configuration again");
+        fault(
+            fmt::format("rate {:g}, last sample {:g}", rate, last),
+            backwards && c_.samples > 0
+                ? fmt::format("the rate before it lasts to sample {}", c_.samples)
+                : "a rate must be positive (0 only as the single rate), and the last sample must lie between 1 "
+                  "and 1e9",
+            "export the configuration again");
       if (n > 0 && rate > 0) c_.rates.emplace_back(rate, static_cast<long>(std::clamp(last, 0.0, 1e9)));
       c_.samples = static_cast<long>(std::clamp(last, 0.0, 1e9));
     }
   }
 
   void times() {
-    const std::string_view first = comtrade_line(rest_);
+    const std::string_view first = take_line(rest_);
     ++number_;
     c_.about.start = c_.about.revision == 1991 ? start_of_1991(trim(first)) : std::string(trim(first));
     // Time stamps are in nanoseconds if the seconds of the date have more than six decimals (2013, clause
@@ -202,8 +202,9 @@ class Config {
       fault(fmt::format("data type '{}'", k), "there are ASCII, BINARY, BINARY32 and FLOAT32",
             "export the data again");
     if (wide && c_.about.revision < 2013)
-      c_.about.notes.push_back(fmt::format(
-          "The data type {} came with revision 2013, the configuration is of {}.", k, c_.about.revision));
+      c_.about.notes.push_back(
+          fmt::format("Data type {} exists since revision 2013, but the configuration states revision {}.", k,
+                      c_.about.revision));
     const double multiplier = time_multiplier();
     c_.stamp = (digits > 6 ? 1e-9 : 1e-6) * multiplier;
     if (!(multiplier > 0))
@@ -266,13 +267,6 @@ std::optional<double> comtrade_number(std::string_view text) {
   if (text.empty() || error != std::errc{} || end != text.data() + text.size() || !std::isfinite(v))
     return std::nullopt;
   return v;
-}
-
-std::string_view comtrade_line(std::string_view& text) {
-  const auto end = text.find('\n');
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  return line;
 }
 
 ComtradeConfig parse_comtrade_config(std::string_view bytes, const std::string& name, Problems& problems) {

@@ -24,7 +24,5 @@ ComtradeConfig parse_comtrade_config(std::string_view cfg, const std::string& na
 /// Returns the text between commas, without surrounding blanks, CR and the end-of-file mark 0x1A.
 std::vector<std::string_view> comtrade_fields(std::string_view line);
 std::optional<double> comtrade_number(std::string_view text);
-/// Removes the first line, which ends with LF, from `text` and returns it without the LF.
-std::string_view comtrade_line(std::string_view& text);
 
 }  // namespace swingbank::validate::record

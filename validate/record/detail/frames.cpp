@@ -12,11 +12,6 @@
 namespace swingbank::validate::record {
 namespace {
 
-const RawColumn* find(const RawRecord& raw, Quantity q) {
-  const auto at = std::ranges::find(raw.columns, q, [](const RawColumn& c) { return c.meaning.quantity; });
-  return at == raw.columns.end() ? nullptr : &*at;
-}
-
 /// Returns the columns that are all zero in a lost frame. Empty without a voltage or a power, because zeros
 /// are then not conclusive.
 std::vector<RawColumn*> phasors_of(RawRecord& raw) {
@@ -48,9 +43,9 @@ bool goes_on(const RawRecord& raw, std::size_t before, std::size_t after) {
   };
   double power = 0;
   for (const auto q : {Quantity::P, Quantity::Q, Quantity::I})
-    if (const auto* c = find(raw, q)) power = std::max(power, std::abs(c->values[before]));
+    if (const auto* c = find_column(raw, q)) power = std::max(power, std::abs(c->values[before]));
   for (const auto q : {Quantity::V, Quantity::P, Quantity::Q, Quantity::I})
-    if (const auto* c = find(raw, q)) {
+    if (const auto* c = find_column(raw, q)) {
       const double limit =
           std::max(q == Quantity::V ? kVoltageGoesOn : kPowerGoesOn * power, 1.5 * moved(*c));
       if (!(std::abs(c->values[after] - c->values[before]) <= limit)) return false;
@@ -68,8 +63,7 @@ bool same_rows(const RawRecord& raw, std::size_t a, std::size_t b) {
 }
 
 void drop_repeats(RawRecord& raw, SampleFaults& faults) {
-  const RawColumn* time = find(raw, Quantity::time);
-  const std::vector<double>& t = time->values;
+  const std::vector<double>& t = time_column(raw).values;
   if (t.size() < 3 || !std::ranges::all_of(t, [](double v) { return std::isfinite(v); })) return;
   std::vector<double> steps;
   for (std::size_t k = 0; k + 1 < t.size(); ++k) steps.push_back(t[k + 1] - t[k]);
@@ -143,7 +137,7 @@ void lose_zero_frames(RawRecord& raw, SampleFaults& faults) {
         if (zero(i))
           for (RawColumn* c : phasors) {
             faults.lose(c->name, fmt::format("{} = 0", c->name), i,
-                        "voltage, power and angle are all exactly zero: that is no measurement",
+                        "voltage, power and angle are all exactly zero, which is not a measurement",
                         "fill it at the source, or cut the record before it (--until)");
             c->values[i] = kNoValue;
           }

@@ -169,10 +169,7 @@ class Combination {
           x[p].push_back(-x[(p + 1) % 3][k] - x[(p + 2) % 3][k]);
       }
     if (const auto fault = sequence_fault(x, names))
-      throw InputError({fault->what, file_,
-                        fmt::format("of {}, {}, {} the negative sequence is larger than the positive one",
-                                    names[0], names[1], names[2]),
-                        fault->remedy});
+      throw InputError({fault->what, file_, fault->why, fault->remedy});
     RawColumn size{names[0], {magnitude, Unit::pu, false, {}, false}, {}};
     RawColumn turned{first_of(angles).name, {angle, Unit::radian, false, {}, false}, {}};
     // The conversion to pu already handles line-to-line voltages, so the factor 1/sqrt(3) of

@@ -74,18 +74,20 @@ std::optional<SequenceFault> sequence_fault(const std::array<std::vector<Complex
                                             const std::array<std::string, 3>& names) {
   const Sequences as_is = sequences(x, {1.0, 1.0, 1.0});
   if (as_is.positive >= as_is.negative) return std::nullopt;
+  const std::string why = fmt::format("of {}, {}, {} the negative sequence is larger than the positive one",
+                                      names[0], names[1], names[2]);
   for (std::size_t p = 0; p < 3; ++p) {  // a reversed phase reduces the positive sequence to a third
     std::array<Complex, 3> factor{1.0, 1.0, 1.0};
     factor[p] = -1.0;
     if (const Sequences s = sequences(x, factor); s.positive > 4 * s.negative)
-      return SequenceFault{fmt::format("{} has the other sign than {} and {}", names[p], names[(p + 1) % 3],
+      return SequenceFault{fmt::format("{} has the opposite sign of {} and {}", names[p], names[(p + 1) % 3],
                                        names[(p + 2) % 3]),
-                           fmt::format("reverse {}: its leads are exchanged", names[p])};
+                           why, fmt::format("reverse {}: its leads are exchanged", names[p])};
   }
   return SequenceFault{
-      "phase sequence is A-C-B",
-      fmt::format("exchange the names of {} and {}: two leads are exchanged, or the grid's phases follow "
-                  "one another in the order A-C-B, and then exchange them for voltages and currents",
+      "phase sequence is A-C-B", why,
+      fmt::format("exchange the names of {} and {}, because two leads are exchanged; if the grid has phase "
+                  "sequence A-C-B, exchange voltages and currents",
                   names[1], names[2])};
 }
 

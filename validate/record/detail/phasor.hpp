@@ -36,7 +36,7 @@ std::complex<double> positive_sequence(const std::array<std::complex<double>, 3>
 
 /// Error in the order or signs of three phases: phase sequence A-C-B, or one phase reversed.
 struct SequenceFault {
-  std::string what, remedy;
+  std::string what, why, remedy;
 };
 /// Finds the error by comparing the summed magnitudes of the sequence components; none if the positive
 /// sequence dominates.

@@ -99,9 +99,7 @@ class Playback {
 
   void rows() {
     while (!text_.empty()) {
-      const auto end = text_.find('\n');
-      const Words words = words_of(text_.substr(0, end));
-      text_.remove_prefix(end == std::string_view::npos ? text_.size() : end + 1);
+      const Words words = words_of(take_line(text_));
       ++line_;
       if (words.empty() || words[0].starts_with("//") || words[0].starts_with('#') ||
           words[0].starts_with('!'))

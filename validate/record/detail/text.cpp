@@ -99,9 +99,23 @@ bool is_cyrillic(std::string_view s) {
 
 }  // namespace
 
+std::string_view trimmed(std::string_view text, std::string_view blank) {
+  const auto first = text.find_first_not_of(blank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blank) - first + 1);
+}
+
+std::string_view take_line(std::string_view& text) {
+  const auto end = text.find('\n');
+  std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
 void refuse_binary(std::string_view bytes, const std::string& name) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF"))
-    refuse("a file in UTF-16", name, "\"Unicode text\" of spreadsheet programs and of PowerShell is that",
+    refuse("a file in UTF-16", name, "spreadsheet programs and PowerShell write it as \"Unicode text\"",
            "save it as CSV in UTF-8 (PowerShell: Out-File -Encoding utf8)");
   if (bytes.starts_with("MATLAB 5.0") || bytes.starts_with("MATLAB 7.3"))
     refuse("a MATLAB file", name, "its name does not end in .mat", "rename it");
@@ -113,10 +127,11 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
            "export it as CSV in PSS/E's Python: dyntools.CHNF('run.out').csvout(outfile='run.csv')");
   if (ends_with(name, ".toml") || bytes.substr(0, 65536).find("\n[plant]") != std::string_view::npos ||
       bytes.starts_with("[plant]"))
-    refuse("a plant file", name, "a record was asked for", "give it as --model, and the record as --records");
+    refuse("a plant file", name, "a record is expected here",
+           "give it as --model, and the record as --records");
   if (ends_with(name, ".raw") || ends_with(name, ".dyr"))
-    refuse("a case of PSS/E", name, "a record was asked for",
-           "give the record as --records; swingbank plant makes a plant file of the case");
+    refuse("a case of PSS/E", name, "a record is expected here",
+           "give the record as --records; swingbank plant converts the case to a plant file");
   // A spreadsheet is a zip file that contains xl/ (Excel) or begins with its media type (LibreOffice).
   const std::string_view begin = bytes.substr(0, 4096);
   const bool sheet = begin.find("xl/") != std::string_view::npos ||
@@ -128,7 +143,7 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
       {"BZh", "a bzip2 archive"},      {"\xFD\x37zXZ", "an xz archive"}, {"Rar!", "a rar archive"}};
   for (const auto& [magic, what] : archives)
     if (bytes.starts_with(magic) && !sheet)
-      refuse(what, name, "records are read as they are", "unpack it and give the record in it");
+      refuse(what, name, "archives are not unpacked", "unpack it and give the record in it");
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xD0\xCF\x11\xE0") || ends_with(name, ".xlsx"))
     refuse("a spreadsheet", name, "only text in columns is read", "save the sheet as CSV (UTF-8)");
   if (ends_with(name, ".psout"))
@@ -144,7 +159,7 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
     refuse("a file in UTF-16, or no text at all", name, "every second byte is zero",
            "save it as CSV in UTF-8");
   if (nothing > 0)
-    refuse("a file that is no text", name, "it holds bytes that no text has",
+    refuse("a binary file", name, "it contains zero bytes",
            "give CSV, COMTRADE (.cfg or .dat of a pair, .cff), PSCAD output (.inf) or HDF5 (.h5)");
 }
 

@@ -60,7 +60,7 @@ bool snap(std::vector<double>& t, double resolution, Record& about) {
   const double first = (low + high) / 2;
   for (std::size_t k = 0; k < t.size(); ++k) t[k] = first + static_cast<double>(k) * h;
   about.notes.push_back(fmt::format(
-      "Times are rounded to {:.3g} ms in the file; the samples were taken to be {:.6g} per second.",
+      "Times are rounded to {:.3g} ms in the file; uniform sampling at {:.6g} samples/s was assumed.",
       1e3 * resolution, 1 / h));
   return true;
 }
@@ -82,8 +82,8 @@ void unleap(std::vector<double>& t, const SampleFaults& faults, std::vector<std:
     const bool hour = halves != 0 && std::abs(leap - halves * kHalfHour) < 2 * usual;
     if ((back || hour) && k > 0 && usual_at(k - 1) && usual_at(k + 1) && notes.size() < 3) {
       notes.push_back(
-          fmt::format("At {} the clock was put {} by {:.6g} s; the samples were assumed evenly spaced.",
-                      faults.where(k + 1), leap < 0 ? "back" : "on", std::abs(leap)));
+          fmt::format("At {} the clock was set {} by {:.6g} s; the samples were assumed evenly spaced.",
+                      faults.where(k + 1), leap < 0 ? "back" : "forward", std::abs(leap)));
       shift -= leap;
     }
     t[k + 1] += shift;
@@ -188,8 +188,8 @@ class Grid {
                       twice_.size(), faults.where(twice_.front())));
     if (!stuck_.empty())
       about.notes.push_back(fmt::format(
-          "{} time stamps repeat the one before although the values go on, the first at {}: these rows were taken to "
-          "be one step later.",
+          "{} rows have the time stamp of the row before but new values, the first at {}; they were taken as one "
+          "step later.",
           stuck_.size(), faults.where(stuck_.front())));
     if (!off_.empty())
       about.notes.push_back(fmt::format(
@@ -198,7 +198,7 @@ class Grid {
           t_[off_.front()]));
     if (coarse())
       about.notes.push_back(fmt::format(
-          "Times are rounded to {:.3g} ms in the file; the samples were taken to be {:.6g} per second.",
+          "Times are rounded to {:.3g} ms in the file; uniform sampling at {:.6g} samples/s was assumed.",
           1e3 * rows_.resolution, rate));
     for (std::size_t i = 1; i < index_.size(); ++i) {
       const double missing = static_cast<double>(index_[i] - index_[i - 1]) - 1;
@@ -285,7 +285,8 @@ std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
       "The file's {} samples are {:.3g} to {:.3g} s apart{}: they were interpolated linearly "
       "and resampled {:g} times a second.",
       t.size(), std::ranges::min(steps), std::ranges::max(steps),
-      clock.rows > 0 ? fmt::format(" ({} of them at the time of the one before)", clock.rows) : "", 1 / h));
+      clock.rows > 0 ? fmt::format(" ({} of them repeat the time of the sample before)", clock.rows) : "",
+      1 / h));
   return even;
 }
 
