@@ -21,7 +21,7 @@ sed "s/', 345, /', 1, /" "$raw" >"$work/per_unit.raw"
 "$swingbank" plant --raw "$work/per_unit.raw" --dyr "$dyr" --bus 32 >"$work/per_unit.toml" 2>"$work/notes"
 grep -q '^base_kv' "$work/per_unit.toml" && fail "1 kV is taken for a nominal voltage"
 grep -q 'no nominal voltage (BASKV = 1 kV): for records in kV write base_kv' "$work/notes" || fail "not said: $(cat "$work/notes")"
-grep -q '^# base_kv = ?  # nominal kV, line to line' "$work/per_unit.toml" || fail "the file does not ask for base_kv"
+grep -q '^# base_kv =  # nominal line-to-line voltage' "$work/per_unit.toml" || fail "the file does not ask for base_kv"
 ! grep -q 'BASKV' "$work/per_unit.toml" || fail "the file keeps a note that is wrong once base_kv is filled in"
 for k in 1 2; do
   { echo t_s,V_kV,theta_deg,P_MW,Q_Mvar && seq 0 0.02 10 | sed 's/$/,345,0,600,100/'; } >"$work/kv$k.csv"

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <regex>
 
-#include "base/nearest_word.hpp"
+#include "validate/plant/unknown_keys.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
@@ -23,12 +23,12 @@ constexpr std::array kNameplateFields = {
           FieldNeed::required},
     Field{"mva", "Rated apparent power", "MVA", "rated apparent power of machine or converter",
           FieldKind::rating, FieldNeed::required},
-    Field{"kv", "Rated voltage", "kV", "rated line-to-line voltage of its terminal", FieldKind::rating,
+    Field{"kv", "Rated voltage", "kV", "rated line-to-line voltage at the terminals", FieldKind::rating,
           FieldNeed::required},
     Field{"mw", "Rated active power", "MW", "rated active power of the unit", FieldKind::rating},
     Field{"power_factor", "Rated power factor", "", "rated power factor", FieldKind::rating},
     Field{"commissioned", "Commissioned", "", "date of commissioning", FieldKind::date},
-    Field{"recorded", "Date of recording", "", "date of the records, the first if there are several",
+    Field{"recorded", "Date of recording", "", "date of the record; if there are several, of the first",
           FieldKind::date, FieldNeed::required},
     Field{"tested", "Tested", "", "date of the last test of the equipment", FieldKind::date},
 };
@@ -84,20 +84,10 @@ bool is_date(const std::string& text) {
 /// Adds a problem for each key of the table that is not in `known`, and one if the value is not a table.
 void refuse_unknown(Config& config, const std::string& table, const std::vector<std::string>& known) {
   if (config.has(table) && !config.is_table(table))
-    config.problem(table, table + " that is no table", "it has the fields of the nameplate",
+    config.problem(table, table + " is not a table", "it contains the fields of the nameplate",
                    "write [" + table + "] on a line of its own, and the fields below it");
   config.ignore(table);  // it may be empty
-  const std::vector<std::string> keys = config.keys(table);
-  std::vector<std::string> missing;
-  std::ranges::copy_if(known, std::back_inserter(missing),
-                       [&](const auto& key) { return std::ranges::count(keys, key) == 0; });
-  for (const auto& key : keys) {
-    if (std::ranges::count(known, key) > 0) continue;
-    const std::string full = table + "." + key, nearest = nearest_word(key, missing);
-    config.problem(full, "unknown key " + full, "Swingbank has no such key in [" + table + "]",
-                   fmt::format("remove it or use one of: {}{}", fmt::join(known, ", "),
-                               nearest.empty() ? "" : "; did you mean " + nearest + "?"));
-  }
+  refuse_unknown_keys(config, table, "[" + table + "]", known);
 }
 
 void read_field(Config& config, const Field& field, const std::string& key, Nameplate& into) {
@@ -120,8 +110,7 @@ void read_field(Config& config, const Field& field, const std::string& key, Name
     config.problem(full, full + " = \"\"", "it is empty",
                    "write the " + std::string(field.meaning) + ", or leave the key out");
   else if (date && !is_date(text))
-    config.problem(full, full + " = \"" + text + "\"",
-                   "it is not a date of the calendar in the form of ISO 8601",
+    config.problem(full, full + " = \"" + text + "\"", "it is not an existing date in ISO 8601 form",
                    "write \"2026-03-01\", \"2026-03\" or \"2026\"");
   else
     into.values[key] = text;

@@ -18,7 +18,7 @@ std::vector<const sim::plant::Block*> dyr_blocks(const PlantModel& model) {
 
 void check_bus(const PlantModel& model, const std::string& where, Problems& problems) {
   if (model.bus <= 0)
-    problems.add("no bus number", where, "each record begins with it",
+    problems.add("no bus number", where, "each record begins with the bus number",
                  "write bus and id under [plant], or give --bus and --id");
 }
 
@@ -48,7 +48,7 @@ std::string dyd_text(const PlantModel& model, const std::vector<std::string>& he
                      const sim::formats::DydPlace& place, const std::string& where, Problems& problems) {
   check_bus(model, where, problems);
   if (!(place.kv > 0))
-    problems.add("no nominal voltage", where, "PSLF requires that of the unit's bus",
+    problems.add("no nominal voltage", where, "a .dyd record contains the nominal voltage of the unit's bus",
                  "write base_kv under [record], or give --kv");
   return comments(model, head, "# ") +
          sim::grid::unit_dyd(model.plant, model.bus, model.id, place, where, problems);
@@ -70,15 +70,15 @@ WrittenRecords write_records_beside(const std::filesystem::path& plant_file, con
                                     const PlantModel& model, RecordFormat format) {
   const auto changed = changed_blocks(before, model);
   const std::vector<std::string> head = {
-      model.name,
-      changed.empty() ? "nothing is changed" : fmt::format("changed or new: {}", fmt::join(changed, ", "))};
+      model.name, changed.empty() ? "no parameter is changed"
+                                  : fmt::format("changed or new: {}", fmt::join(changed, ", "))};
   Problems problems;
   const std::string where = plant_file.filename().string(),
                     ending = format == RecordFormat::dyd ? ".dyd" : ".dyr";
   const std::string text = format == RecordFormat::dyd
                                ? dyd_text(model, head, {"", model.record_base.kv}, where, problems)
                                : dyr_text(model, head, where, problems);
-  if (!problems.empty()) return {"no " + ending + ": " + problems.list()[0].sentence(), {}};
+  if (!problems.empty()) return {"no " + ending + " was written: " + problems.list()[0].sentence(), {}};
   auto file = plant_file;
   file.replace_extension(ending);
   write_file(file, text);

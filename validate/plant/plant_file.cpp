@@ -59,7 +59,7 @@ void append_block(std::string& text, const PlantModel& model, const sim::plant::
   text += "\neffect = " + in_quotes(effect.name) + "  " + comment(std::string(effect.title));
   bool standard = false;
   for (std::size_t i = 0; i < block.p.size(); ++i) standard = standard || left_default(model, block, i);
-  if (standard) text += "default_values = true  # entries in comments have default values\n";
+  if (standard) text += "default_values = true  # commented parameters have default values\n";
   for (std::size_t i = 0; i < block.p.size(); ++i) {
     const auto& p = effect.parameters[i];
     const std::string entry =
@@ -80,8 +80,8 @@ std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
 void append_submitted(std::string& text, const PlantModel& model) {
   if (!model.submitted) return;
   text +=
-      "\n[submitted]  # before a calibration that was not adequate: calibrate, add and "
-      "diagnose start from these values\n";
+      "\n[submitted]  # values from before an inadequate calibration; calibrate, add and diagnose start "
+      "from them\n";
   PlantModel before = model;
   before.plant = *model.submitted;
   const auto old = blocks_of(before), now = blocks_of(model);
@@ -104,32 +104,32 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
   const bool power = model.conventions.mechanical_power;
   text += fmt::format(
       "[plant]\nname = {}\nbase_mva = {}  # machine base [MVA], of all per-unit values below\n"
-      "frequency_hz = {}\nconventions = \"{}\"  # the governor sets {}\nspeed_voltage = {}  # speed term in "
+      "frequency_hz = {}\nconventions = \"{}\"  # output of the governor: {}\nspeed_voltage = {}  # speed term in "
       "the stator voltage equations\n",
       in_quotes(model.name), number(model.plant.mva), number(model.conventions.frequency),
       power ? "psse" : "andes", power ? "power" : "torque", model.conventions.speed_voltage);
   if (model.bus > 0)
-    text += fmt::format("bus = {}  # its number in the case\nid = {}\n", model.bus, in_quotes(model.id));
+    text += fmt::format("bus = {}  # bus number in the case\nid = {}\n", model.bus, in_quotes(model.id));
   text += fmt::format("\n[record]\nbase_mva = {}  # base of P_pu and Q_pu in the records [MVA]\n",
                       number(model.record_base.mva));
   if (model.record_base.kv > 0)
     text += fmt::format("base_kv = {}  # base of voltages in kV\n", number(model.record_base.kv));
   else
-    text += "# base_kv = ?  # nominal kV, line to line: fill in for records in kV\n";
+    text += "# base_kv =  # nominal line-to-line voltage [kV]; required if records are in kV\n";
   if (model.record_base.efd > 0)
     text += fmt::format("efd_base = {}  # 1 pu of Efd in the records' unit\n", number(model.record_base.efd));
   if (model.record_base.ifd > 0)
     text += fmt::format("ifd_base = {}  # 1 pu of Ifd in the records' unit\n", number(model.record_base.ifd));
   if (model.dispatch)
     text += fmt::format(
-        "\n[dispatch]  # in the case; records of another unit or base are recognised by it\nP_MW = {}\n"
+        "\n[dispatch]  # operating point in the case; used to detect records of another unit or base\nP_MW = {}\n"
         "Q_Mvar = {}\nV_pu = {}\n",
         number(model.dispatch->P), number(model.dispatch->Q), number(model.dispatch->V));
   text += nameplate_text(model.nameplate, in_quotes, number);
   if (!model.reading.columns.empty()) text += "\n[record.columns]\n";
   for (const auto& [word, column] : model.reading.columns)
     text += fmt::format("{} = {}\n", word, in_quotes(column));
-  text += staged_text(model.reading.staged, [](double v) { return number(v); });
+  text += staged_text(model.reading.staged, in_quotes, number);
   for (const auto* block : blocks_of(model)) append_block(text, model, *block);
   append_submitted(text, model);
   return text;
@@ -142,7 +142,7 @@ std::vector<std::string> user_model_names(const PlantModel& model) {
   Problems problems;
   for (const auto& user_model : model.user_models) {
     if (std::ranges::count(names, user_model.filename().string()))
-      problems.add("two user-defined models in files named " + user_model.filename().string(),
+      problems.add("two files of user-defined models named " + user_model.filename().string(),
                    user_model.string(), "their copies would overwrite each other", "rename one of them");
     names.push_back(user_model.filename().string());
   }
@@ -157,21 +157,21 @@ void check(const PlantModel& model, const std::vector<std::string>& provenance) 
   for (const auto& user_model : model.user_models) user_models.push_back(fs::absolute(user_model).string());
   const PlantModel back =
       parse_plant_model(compose(model, provenance, user_models), model.name + " as written");
-  const std::string why = difference(model, back);
+  const std::string why = difference(back, model);
   if (!why.empty())
-    throw InputError({"plant file of " + model.name, "writing it", why + " does not read back",
-                      "report this as an error of the program"});
+    throw InputError({"plant file of " + model.name, "writing it", "it is read back differently: " + why,
+                      "this is an error of Swingbank: please report it"});
 }
 
 bool same(double a, double b) { return a == b; }  // a plant contains no NaN
 
 std::string block_difference(const sim::plant::Block& a, const sim::plant::Block& b) {
   if (!a.effect || !b.effect ? a.effect != b.effect : !sim::user_models::same_effect(*a.effect, *b.effect))
-    return fmt::format("effect {} against {}", a.effect ? a.effect->name : "none",
+    return fmt::format("effect {} instead of {}", a.effect ? a.effect->name : "none",
                        b.effect ? b.effect->name : "none");
   for (std::size_t i = 0; i < a.p.size(); ++i)
     if (!same(a.p[i], b.p[i]))
-      return fmt::format("{}.{} = {} against {} {}", a.effect->name, a.effect->parameters[i].name, a.p[i],
+      return fmt::format("{}.{} = {} instead of {} {}", a.effect->name, a.effect->parameters[i].name, a.p[i],
                          b.p[i], a.effect->parameters[i].unit);
   return {};
 }
@@ -215,7 +215,7 @@ void write_plant_file(const fs::path& file, const PlantModel& model,
     std::error_code none;
     if (!fs::equivalent(copy, model.user_models[k], none))
       write_file(copy,
-                 read_input(model.user_models[k], "no readable file of a user-defined model of the plant",
+                 read_input(model.user_models[k], "cannot read the file of a user-defined model of the plant",
                             "restore the file"));
   }
   write_file(file, text);

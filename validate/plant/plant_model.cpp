@@ -15,6 +15,7 @@
 #include "validate/plant/detail/plausible.hpp"
 #include "validate/plant/detail/staged.hpp"
 #include "validate/plant/load_with_user_models.hpp"
+#include "validate/plant/unknown_keys.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
@@ -50,7 +51,7 @@ void warn_unusual(const Config& config, const std::string& section, const sim::p
     const auto& name = block.effect->parameters[static_cast<std::size_t>(i)].name;
     model.warnings.push_back(Problem{sim::plant::value_text(block, i),
                                      config.where(fmt::format("{}.{}", section, name)),
-                                     sim::plant::usual_text(*block.effect, i), "correct it if it is a slip"}
+                                     sim::plant::usual_text(*block.effect, i), "correct it if it is an error"}
                                  .sentence());
   }
 }
@@ -72,7 +73,7 @@ sim::plant::Block read_block(Config& config, PlantModel& model, Slot slot, const
   const bool sound = config.sound();
   const bool may_miss =
       config.optional<bool>(section + ".default_values", false,
-                            {.meaning = "true: a missing parameter has its default, and reports list it"});
+                            {.meaning = "true: missing parameters have default values; reports list them"});
   const auto given = config.keys(section);
   for (const auto& p : block.effect->parameters) {
     const std::string key = fmt::format("{}.{}", section, p.name);
@@ -97,10 +98,10 @@ void check_orderings(const Config& config, PlantModel& model) {
   if (!machine.effect) return;
   for (const auto& o : sim::plant::violated(machine)) {
     const auto& name = machine.effect->parameters[static_cast<std::size_t>(o.greater)].name;
-    model.warnings.push_back(Problem{sim::plant::violation_text(machine, o),
-                                     config.where(fmt::format("machine.{}", name)),
-                                     "every machine has them in that order", "check both values"}
-                                 .sentence());
+    model.warnings.push_back(
+        Problem{sim::plant::violation_text(machine, o), config.where(fmt::format("machine.{}", name)),
+                "in a machine the first is always larger than the second", "check both values"}
+            .sentence());
   }
 }
 
@@ -115,11 +116,7 @@ std::vector<sim::plant::Block> read_several(Config& config, PlantModel& model, S
     if (!block.effect) continue;
     std::vector<std::string> known = {"effect", "default_values"};
     for (const auto& p : block.effect->parameters) known.emplace_back(p.name);
-    for (const auto& key : config.keys(section))
-      if (!std::ranges::count(known, key))
-        config.problem(section + "." + key, "unknown key " + key,
-                       "Swingbank has no such key in [[" + name + "]]",
-                       fmt::format("remove it or use one of: {}", fmt::join(known, ", ")));
+    refuse_unknown_keys(config, section, "[[" + name + "]]", known);
     blocks.push_back(block);
   }
   return blocks;
@@ -160,16 +157,16 @@ void read_around(Config& config, PlantModel& model) {
     const std::string section(sim::slot_name(slot));
     if (slot == Slot::machine || slot == Slot::load || !config.has(section)) continue;
     if (effects_of(model.library, slot).empty()) {
-      config.problem(section, "section [" + section + "]", "this build has no effect of that kind",
+      config.problem(section, "section [" + section + "]", "this build contains no effect for this section",
                      "remove it; the input is then constant at the operating point");
     } else if (filled(plant, slot)) {
       config.ignore(section);
-      config.problem(
-          section, fmt::format("[{}] beside {} of the grid's files", section, name_in(plant, slot)),
-          "a plant has at most one",
-          slot == Slot::transformer ? "remove it, or take measured_at out of [grid]"
-                                    : fmt::format("remove it, or write ignore_models = [\"{}\"] under [grid]",
-                                                  name_in(plant, slot)));
+      config.problem(section, fmt::format("[{}], and {} in the grid's files", section, name_in(plant, slot)),
+                     "a plant has at most one",
+                     slot == Slot::transformer
+                         ? "remove it, or remove measured_at from [grid]"
+                         : fmt::format("remove it, or write ignore_models = [\"{}\"] under [grid]",
+                                       name_in(plant, slot)));
     } else if (slot == Slot::transformer) {
       plant.transformer = read_block(config, model, slot, section);
     } else {
@@ -206,7 +203,7 @@ void read_submitted(Config& config, PlantModel& model) {
     for (const auto& name : config.keys("submitted." + effect)) {
       const std::string key = fmt::format("submitted.{}.{}", effect, name);
       const auto before =
-          config.require<double>(key, {.meaning = "value before a calibration that was not adequate"});
+          config.require<double>(key, {.meaning = "value from before a calibration that was not adequate"});
       if (double* value = value_in(plant, effect, name))
         *value = before;
       else
@@ -214,7 +211,7 @@ void read_submitted(Config& config, PlantModel& model) {
     }
   model.submitted = std::move(plant);
   model.warnings.push_back(
-      fmt::format("{} is the result of a calibration that was not adequate: its parameters are biased",
+      fmt::format("{} contains the result of an inadequate calibration: its parameters are biased",
                   config.name().string()));
 }
 
@@ -241,8 +238,10 @@ sim::Conventions read_conventions(Config& config, double hz) {
   auto read = config.choice("plant.conventions", {"psse", "andes"}, about) == "andes"
                   ? sim::Conventions::andes(hz)
                   : sim::Conventions::psse(hz);
-  read.speed_voltage = config.optional<bool>("plant.speed_voltage", read.speed_voltage,
-                                             {.meaning = "true: flux linkages' voltage scales with speed"});
+  read.speed_voltage =
+      config.optional<bool>("plant.speed_voltage", read.speed_voltage,
+                            {.meaning = "true: speed term in the stator voltage equations (voltage = "
+                                        "speed times flux linkage)"});
   return read;
 }
 
@@ -256,7 +255,7 @@ void note_defaults(PlantModel& model, const std::vector<std::string>& effects) {
 
 void read_from_grid(Config& config, PlantModel& model) {
   for (const char* twice : {"plant.base_mva", "machine", "converter"})
-    config.exclude(twice, std::string(twice) + " beside [grid]", "the grid's files give it already",
+    config.exclude(twice, std::string(twice) + " together with [grid]", "the grid's files already contain it",
                    "remove one of them");
   sim::grid::UnitChoice choice{
       .raw =
@@ -274,14 +273,17 @@ void read_from_grid(Config& config, PlantModel& model) {
                         {.meaning = "completion of records that are shorter than their model"});
   if (config.has("grid.measured_at"))
     choice.measured_at = static_cast<int>(config.require<std::int64_t>(
-        "grid.measured_at", {1.0, kMostBuses, "", "bus of the records, behind the unit's transformer"}));
+        "grid.measured_at", {1.0, kMostBuses, "",
+                             "bus at which the records were measured, on the grid side of the unit's "
+                             "transformer"}));
   if (!config.sound()) return;
   choice.frequency_hz = model.conventions.frequency;
   const sim::grid::Unit unit = sim::grid::read_unit(choice);
   if (unit.frequency != model.conventions.frequency)
     config.problem("plant.frequency_hz",
                    fmt::format("plant.frequency_hz = {:g} Hz", model.conventions.frequency),
-                   fmt::format("the grid's .raw says {:g} Hz", unit.frequency), "make them agree");
+                   fmt::format("the frequency in the grid's .raw is {:g} Hz", unit.frequency),
+                   "use the same frequency in both files");
   model.plant = unit.plant;
   model.bus = unit.bus;
   model.id = unit.id;
@@ -310,15 +312,15 @@ PlantModel read_plant(Config& config, PlantModel model) {
   model.name =
       config.require<std::string>("plant.name", {.meaning = "name of the plant, printed in reports"});
   config.optional<std::string>("plant.origin", "", {.meaning = "source of the figures"});
-  const auto hz =
-      config.require<double>("plant.frequency_hz", {kSmallest, 1000.0, "Hz", "nominal frequency, 50 or 60"});
+  const auto hz = config.require<double>("plant.frequency_hz",
+                                         {kSmallest, 1000.0, "Hz", "nominal frequency (50 or 60 Hz)"});
   model.conventions = read_conventions(config, hz);
   model.record_base.frequency = hz;
   model.record_base.mva = config.require<double>(
       "record.base_mva", {kSmallest, 1e9, "MVA", "base of P_pu and Q_pu of this plant's records"});
   model.record_base.kv = config.optional<double>(
       "record.base_kv", 0.0,
-      {kSmallest, 1e9, "kV", "base of the voltage, needed if a record gives it in kV"});
+      {kSmallest, 1e9, "kV", "base of the voltage; needed if a record contains the voltage in kV"});
   model.record_base.efd = config.optional<double>(
       "record.efd_base", 0.0, {kSmallest, 1e9, "V or pu", "1 pu (air-gap line) of Efd in the records' unit"});
   model.record_base.ifd = config.optional<double>(
@@ -327,20 +329,21 @@ PlantModel read_plant(Config& config, PlantModel model) {
     model.dispatch = {
         config.require<double>("dispatch.P_MW",
                                {.unit = "MW", .meaning = "active power of the unit in its case"}),
-        config.require<double>("dispatch.Q_Mvar", {.unit = "Mvar", .meaning = "its reactive power"}),
+        config.require<double>("dispatch.Q_Mvar",
+                               {.unit = "Mvar", .meaning = "reactive power of the unit in its case"}),
         config.require<double>("dispatch.V_pu",
-                               {kSmallest, 10.0, "pu", "voltage at the bus of its records"})};
+                               {kSmallest, 10.0, "pu", "voltage at the measured bus in the case"})};
   model.nameplate = read_nameplate(config);
   model.reading.staged = read_staged_events(config);
   for (const auto& word : config.keys("record.columns"))
     model.reading.columns[word] = config.require<std::string>(
-        "record.columns." + word, {.meaning = "column of the records, as V = \"NORTH.BUS1.VPM [kV]\""});
+        "record.columns." + word,
+        {.meaning = "column of the records, for example V = \"NORTH.BUS1.VPM [kV]\""});
   if (config.has("grid")) {
     read_from_grid(config, model);
   } else {
     model.plant.mva = config.require<double>(
-        "plant.base_mva",
-        {kSmallest, 1e9, "MVA", "machine base: per-unit parameters of this file are on it"});
+        "plant.base_mva", {kSmallest, 1e9, "MVA", "machine base of all per-unit parameters in this file"});
     model.plant.name = model.name;
     model.bus = static_cast<int>(config.optional<std::int64_t>(
         "plant.bus", 0, {1.0, kMostBuses, "", "bus number of the unit, for its .dyr records"}));
@@ -362,7 +365,7 @@ PlantModel read_plant(Config& config, PlantModel model) {
 PlantModel parse_with_user_models(const std::string& text, const fs::path& file,
                                   const std::vector<fs::path>& user_models) {
   if (is_columns(text))
-    throw InputError({"a record", file.string(), "a plant file was asked for",
+    throw InputError({"the file is a record", file.string(), "a plant file is required",
                       "give the plant file (.toml) as --model, and the record as --records"});
   Config config(text, file);
   PlantModel model;
@@ -391,8 +394,8 @@ PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
 PlantModel load_plant_model(const fs::path& file) { return load_plant_model(file, {}); }
 
 PlantModel load_plant_model(const fs::path& file, const std::vector<fs::path>& user_models) {
-  return parse_with_user_models(read_input(file, "no readable plant file", "give the path of a plant .toml"),
-                                file, user_models);
+  return parse_with_user_models(
+      read_input(file, "cannot read the plant file", "give the path of a plant .toml"), file, user_models);
 }
 
 PlantModel as_submitted(PlantModel model) {

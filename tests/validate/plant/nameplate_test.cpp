@@ -130,8 +130,8 @@ TEST(Nameplate, PresentFieldsAreNotSuggested) {
 
 TEST(Nameplate, EmptyTablesAreAcceptedAndOtherValuesAreNot) {
   EXPECT_EQ(refusal("[nameplate]\n[nameplate.exciter]\n"), "accepted");
-  EXPECT_THAT(refusal("[nameplate]\nexciter = \"ABC\"\n"), HasSubstr("nameplate.exciter that is no table"));
-  EXPECT_THAT(refusal("[[nameplate]]\nowner = \"A\"\n"), HasSubstr("nameplate that is no table"));
+  EXPECT_THAT(refusal("[nameplate]\nexciter = \"ABC\"\n"), HasSubstr("nameplate.exciter is not a table"));
+  EXPECT_THAT(refusal("[[nameplate]]\nowner = \"A\"\n"), HasSubstr("nameplate is not a table"));
 }
 
 TEST(Nameplate, ReferenceManualListsEveryField) {

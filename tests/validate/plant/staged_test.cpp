@@ -36,6 +36,15 @@ TEST(StagedPlantTest, EventsAreReadAndWritten) {
   EXPECT_EQ(difference(model, again), "");
 }
 
+TEST(StagedPlantTest, RecordNameWithQuotesIsReadBack) {
+  PlantModel model = parse_plant_model(
+      with(
+          "\n[[event]]\nkind = \"vref_step\"\nrecord = 'step \"A\" of C:\\tests.csv'\ntime = 2\nsize = 0.03\n"),
+      "x.toml");
+  ASSERT_EQ(model.reading.staged.at(0).record, "step \"A\" of C:\\tests.csv");
+  EXPECT_EQ(parse_plant_model(plant_text(model, {}), "again.toml").reading.staged, model.reading.staged);
+}
+
 TEST(StagedPlantTest, ReportsAllFaultsTogether) {
   try {
     parse_plant_model(
@@ -44,7 +53,7 @@ TEST(StagedPlantTest, ReportsAllFaultsTogether) {
     FAIL() << "bad events were taken";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("event[0].size"));
-    EXPECT_THAT(error.what(), HasSubstr("unknown key sise"));
+    EXPECT_THAT(error.what(), HasSubstr("unknown key event[0].sise"));
     EXPECT_THAT(error.what(), HasSubstr("load_rejection"));
   }
 }

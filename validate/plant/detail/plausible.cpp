@@ -50,13 +50,12 @@ std::optional<ForeignBase> foreign_base(const sim::plant::Block& machine, double
   const double mva = std::round(likely / unit) * unit;
   return ForeignBase{
       fmt::format("H = {:g} s and {} = {:g} pu", *h, reactance, *x),
-      fmt::format("on {:g} MVA these would be a machine of about {:g} MVA; are they on another base, the "
-                  "system's or one that the file has wrong?",
+      fmt::format("on a base of {:g} MVA, these values describe a machine of about {:g} MVA; they are "
+                  "probably on another base",
                   base_mva, mva),
-      fmt::format(
-          "set base_mva to the machine's own, say {0:g}, and give values on it: H divided, reactances "
-          "and resistances multiplied by {1:.3g}",
-          mva, mva / base_mva)};
+      fmt::format("set base_mva to the machine's rating (about {0:g} MVA) and convert the values to it: "
+                  "divide H, and multiply reactances and resistances, by {1:.3g}",
+                  mva, mva / base_mva)};
 }
 
 }  // namespace swingbank::validate::plant

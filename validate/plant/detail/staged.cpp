@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "validate/plant/unknown_keys.hpp"
+
 namespace swingbank::validate::plant {
 namespace {
 
@@ -40,17 +42,13 @@ record::StagedEvent read_one(Config& config, const std::string& section) {
         config.require<double>(section + ".size", {-kLargestStep, kLargestStep, "pu", "size of the step"});
     known.insert(known.end(), {"size", "until"});
     if (config.has(section + ".until"))
-      e.until = config.require<double>(section + ".until",
-                                       {-kLatest, kLatest, "s", "end of the step; missing: it stays"});
+      e.until = config.require<double>(
+          section + ".until", {-kLatest, kLatest, "s", "end of the step; if missing, the step is permanent"});
     if (config.sound() && !(e.until > e.time))
       config.problem(section + ".until", fmt::format("until = {:g} s with time = {:g} s", e.until, e.time),
-                     "the end of a step is after its beginning",
-                     "give until > time, or omit it for a permanent step");
+                     "a step must end after it begins", "give until > time, or omit it for a permanent step");
   }
-  for (const auto& key : config.keys(section))
-    if (!std::ranges::count(known, key))
-      config.problem(section + "." + key, "unknown key " + key, fmt::format("a {} has no such key", kind),
-                     fmt::format("remove it or use one of: {}", fmt::join(known, ", ")));
+  refuse_unknown_keys(config, section, "a " + kind, known);
   return e;
 }
 
@@ -61,7 +59,8 @@ std::vector<record::StagedEvent> read_staged_events(Config& config) {
   if (!config.has("event")) return events;
   config.ignore("event");  // its keys are checked above
   if (!config.is_array("event")) {
-    config.problem("event", "one [event]", "a plant may have several", "write [[event]]");
+    config.problem("event", "[event] is a single table", "staged events are a list of tables",
+                   "write [[event]]");
     return events;
   }
   for (int k = 0; config.has(fmt::format("event[{}]", k)); ++k)
@@ -69,11 +68,12 @@ std::vector<record::StagedEvent> read_staged_events(Config& config) {
   return events;
 }
 
-std::string staged_text(const std::vector<record::StagedEvent>& events, std::string (*number)(double)) {
+std::string staged_text(const std::vector<record::StagedEvent>& events,
+                        std::string (*quoted)(std::string_view), std::string (*number)(double)) {
   std::string text;
   for (const auto& e : events) {
     text += fmt::format("\n[[event]]\nkind = \"{}\"\n", record::staged_name(e.kind));
-    if (!e.record.empty()) text += fmt::format("record = \"{}\"\n", e.record);
+    if (!e.record.empty()) text += fmt::format("record = {}\n", quoted(e.record));
     if (e.kind != Kind::open_circuit) text += fmt::format("time = {}  # [s]\n", number(e.time));
     if (!e.opens_breaker()) text += fmt::format("size = {}  # [pu]\n", number(e.size));
     if (std::isfinite(e.until)) text += fmt::format("until = {}  # [s]\n", number(e.until));
