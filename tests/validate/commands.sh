@@ -34,7 +34,7 @@ refuses() {
 one=(--record "$records/avr_ev1.csv") two=(--record "$records/avr_ev2.csv")
 refuses 'name one: --switch' "$compare" --model "$model" "${one[@]}" "${two[@]}" --switch 2.0
 refuses 'no --record has that file name' "$compare" --model "$model" "${one[@]}" --switch other.csv=2.0
-refuses 'no time in seconds' "$compare" --model "$model" "${one[@]}" --switch 2,0
+refuses 'not a time in seconds' "$compare" --model "$model" "${one[@]}" --switch 2,0
 refuses 'switching time 99 s at avr_ev1.csv (it is outside the record, 0 to ' "$compare" --model "$model" "${one[@]}" --switch 99
 refuses '0 s before the event' "$compare" --model "$model" "${one[@]}" --switch 0.01
 refuses 'overwrite each other' "$compare" --model "$model" "${one[@]}" "${one[@]}"

@@ -16,7 +16,8 @@ using record::Component;
 using sim::Slot;
 
 struct RecordedMachine {
-  static constexpr std::string_view name = "RECORDED", title = "a machine with the recorded signals",
+  static constexpr std::string_view name = "RECORDED",
+                                    title = "machine whose signals are those of the record",
                                     source = "the record", description = "";
   static constexpr Slot slot = Slot::machine;
   static constexpr sim::State states[] = {{"delta", "rad", "constant"}, {"speed", "pu", "constant"}};

@@ -108,8 +108,8 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
     ++point.samples;
   const int n = point.samples;
   if (n < kMinSteady)
-    throw InputError({fmt::format("{} samples before the event", n), record.name,
-                      fmt::format("the operating point is a mean over at least {}", kMinSteady),
+    throw InputError({fmt::format("only {} samples before the event", n), record.name,
+                      fmt::format("the operating point is the mean of at least {} samples", kMinSteady),
                       "give a record that starts earlier, or a longer --pre-event"});
   if (start_on_trajectory(record, point)) return point;
   point.drift = angle_drift(record, n);

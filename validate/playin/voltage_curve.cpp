@@ -76,7 +76,7 @@ VoltageCurve::VoltageCurve(const record::Record& record, std::vector<Switching> 
         add(record.t[k], phasor(record, k));
     if (!is_last && switchings_[s].has_before) add(end, switchings_[s].before);
     if (segment.t.empty())
-      problems.add(fmt::format("no sample between t = {:g} s and t = {:g} s",
+      problems.add(fmt::format("segment without a sample between t = {:g} s and t = {:g} s",
                                s > 0 ? switchings_[s - 1].time : record.t.front(), end),
                    record.name, "the voltage there is unknown",
                    "give switching times inside the record, with a sample between them");

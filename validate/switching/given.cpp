@@ -22,7 +22,7 @@ std::map<std::string, std::vector<double>> given_switching_times(const std::vect
     double t = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), t);
     if (error != std::errc{} || end != number.data() + number.size())
-      problems.add("'" + word + "'", "--switch", "it is no time in seconds",
+      problems.add("'" + word + "'", "--switch", "it is not a time in seconds",
                    "give --switch 2.0 or --switch FILE=2.0");
     else if (record.empty())
       problems.add("'" + word + "'", "--switch", "several records are given",

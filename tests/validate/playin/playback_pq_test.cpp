@@ -77,7 +77,7 @@ TEST(PowerPlaybackTest, RefusesPowerThatNoVoltageDelivers) {
   EXPECT_THAT(test::messages([&] {
                 play_back({s.grid.plants[2], s.grid.conventions}, r, test::exact_switchings(s, 2, false));
               }),
-              ElementsAre(HasSubstr("no terminal voltage for P = ")));
+              ElementsAre(HasSubstr("no terminal voltage exists for P = ")));
 }
 
 TEST(PowerPlaybackTest, DetectsWrongReactance) {

@@ -93,7 +93,7 @@ TEST(VoltageCurveTest, RefusesSegmentsWithoutSamples) {
   EXPECT_THAT(test::messages([] {
                 VoltageCurve(stepped(), {{.time = 1.01}, {.time = 1.02}});
               }),
-              ElementsAre(HasSubstr("no sample between")));
+              ElementsAre(HasSubstr("segment without a sample between")));
   EXPECT_THAT(
       test::messages([] { VoltageCurve(stepped(), {{.time = -1.0}}); }),
       ElementsAre(AllOf(HasSubstr("switching time -1 s"), HasSubstr("outside the record, 0 to 3 s"))));

@@ -188,8 +188,9 @@ class PowerPlayback {
     const std::string when = fmt::format("t = {:.4f} s of {}", t_, run_.record->name);
     if (unsolved_)
       throw InputError(
-          {fmt::format("no terminal voltage for P = {:.4f}, Q = {:.4f} pu", s.real(), s.imag()), when,
-           "the machine's inner voltage behind its impedance cannot deliver as much",
+          {fmt::format("no terminal voltage exists for P = {:.4f}, Q = {:.4f} pu", s.real(), s.imag()), when,
+           "this power exceeds the maximum that the machine's internal voltage can deliver "
+           "through its impedance",
            "check base and sign of P and Q, or play in the voltage instead (--playback voltage)"});
     throw InputError(
         {"playback failed", when, "the plant's equations cannot be integrated further with this power",
