@@ -54,7 +54,8 @@ class Check : Findings {
     constexpr double kSlowestRate = 24.5;
     if (r_.component != record::Component::plant || r_.rate() >= kSlowestRate) return;
     warn("slow_rate", fmt::format("{:.3g} samples/s", r_.rate()),
-         fmt::format("a swing of 2 Hz has {:.2g} samples per period, and the voltage between them is unknown",
+         fmt::format("an oscillation of 2 Hz has {:.2g} samples per period; the voltage between samples is "
+                     "unknown",
                      r_.rate() / 2),
          "give a record at 25/s or more if there is one; with this record only slow quantities "
          "are reliable: inertia, governor, reactances");
@@ -74,8 +75,8 @@ class Check : Findings {
              "export it from 1 s before to 5 s after the event (--from, --until)");
     for (const auto* c : {&r_.V, &r_.theta, &r_.P, &r_.Q})
       if (c->size() != n)
-        refuse("incomplete", "channels of unequal length", "V, theta, P and Q need a value per time",
-               "complete them");
+        refuse("incomplete", "channels of unequal length", "V, theta, P and Q need one value per sample",
+               "complete the columns");
     for (const auto* c : {&r_.t, &r_.V, &r_.theta, &r_.P, &r_.Q, &r_.f, &r_.speed, &r_.Efd, &r_.Ifd})
       for (std::size_t k = 0; k < c->size(); ++k)
         if (!std::isfinite((*c)[k]))
@@ -96,10 +97,10 @@ class Check : Findings {
            "cut the record before it (--until) if there was no such fault");
     if (signals_.longest_repeat >= 3)
       warn("held_samples",
-           fmt::format("{} samples repeat the one before, from t = {:.4g} s", signals_.longest_repeat,
-                       r_.t[signals_.repeat_start]),
+           fmt::format("{} samples in a row equal the previous one, from t = {:.4g} s",
+                       signals_.longest_repeat, r_.t[signals_.repeat_start]),
            "all channels are constant although the record has noise",
-           "check whether the instrument held its last value while data were lost");
+           "check whether data were lost and the instrument repeated its last value");
   }
 
   void event() {
@@ -109,8 +110,8 @@ class Check : Findings {
              "a response to an event cannot be judged from less than 1 s", "give a longer record");
     else if (length < 2)
       warn("short_record", fmt::format("{:.3g} s of record", length),
-           "it determines subtransient and transient reactances and a fast voltage regulator, "
-           "inertia only roughly, governor and stabiliser not at all",
+           "reactances and a fast voltage regulator can be estimated, inertia roughly, governor and "
+           "stabiliser not at all",
            "export at least 5 s after the event if possible");
     if (!signals_.event) {
       refuse("no_event", "no event",
@@ -189,8 +190,8 @@ class Check : Findings {
             std::string("quantised_") + name,
             fmt::format("{} has a quantisation step of {:.3g} pu", name, step),
             *name == 'V'
-                ? "a transducer or an archive has rounded it; behind a regulator the error is slow, so "
-                  "that the residual of a correct model may exceed noise"
+                ? "a transducer or an archive has rounded V; with a voltage regulator the error acts "
+                  "slowly, and the residual of a correct model may exceed noise"
                 : "a transducer or an archive has rounded it; the noise is taken to be at least the quantisation noise",
             "export it with more digits if possible");
   }
@@ -204,12 +205,12 @@ class Check : Findings {
       if (drift > std::max(limit, 6 * s->drift_error * scale))
         add("unsteady", drift > 0.05 ? Severity::refuse : Severity::warn,
             fmt::format("{} drifts by {:.2g} pu of the machine before the event", name, drift),
-            "the model starts in equilibrium there",
+            "the model starts in equilibrium before the event",
             "start the record later, or take another record with less motion before the event");
       else if (swing > std::max(limit, 3 * s->white * scale))
         add("unsteady", swing > 0.05 ? Severity::refuse : Severity::warn,
             fmt::format("{} swings by {:.2g} pu of the machine (rms) before the event", name, swing),
-            "the model starts in equilibrium there",
+            "the model starts in equilibrium before the event",
             "start the record later, or take another record with less motion before the event");
     }
   }
@@ -229,7 +230,7 @@ class Check : Findings {
              fmt::format("that is a voltage in kV or V ({:g} kV nominal) taken as pu", r_.base.kv),
              "name the column V_kV");
     else if (near(v, std::numbers::sqrt3, 0.12) || near(v, 1 / std::numbers::sqrt3, 0.12))
-      refuse("voltage_unit", what, "that is off by sqrt(3)",
+      refuse("voltage_unit", what, "V differs from 1 pu by a factor of sqrt(3)",
              v < 1 ? "if V is line to neutral, name the column V_kV_ln; base_kv is always line to line"
                    : "give base_kv line to line, or name the column V_kV if V is line to line");
     else if (r_.base.kv > 1 && near(v, 1e3, 0.25))  // a case without nominal voltages has base_kv = 1
@@ -248,14 +249,14 @@ class Check : Findings {
       refuse("voltage_unit", what, "that may be a voltage in kV taken as pu",
              "name the column V_kV and give base_kv under [record] in the plant file");
     else
-      refuse("voltage_unit", what, "a plant runs near 1 pu", "check the column of V, its unit and base_kv");
+      refuse("voltage_unit", what, "V of a plant is near 1 pu",
+             "check the column of V, its unit and base_kv");
   }
 
   /// Returns whether the frequency `ratio` [pu of the model's nominal frequency] is the other nominal
   /// frequency, 50 or 60 Hz.
   [[nodiscard]] bool other_nominal(double ratio) const {
-    const double other = std::abs(plant_.frequency - 60) < 5 ? 50.0 : 60.0;
-    return near(ratio, other / plant_.frequency, 0.02);
+    return near(ratio, other_hz() / plant_.frequency, 0.02);
   }
   [[nodiscard]] double other_hz() const { return std::abs(plant_.frequency - 60) < 5 ? 50 : 60; }
 
@@ -334,9 +335,11 @@ class Check : Findings {
       refuse("angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
              "it steps by 360 where it is wrapped: these are degrees taken as radians", name_deg);
     else if (std::abs(signals_.first_angle) > 2.1 * constants::pi && !radians_beyond_a_turn())
-      refuse("angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
-             "that exceeds a full turn, and neither the frequency nor the steps confirm unwrapped radians",
-             "name the column theta_deg if it is degrees; else take whole turns off, or add the frequency");
+      refuse(
+          "angle_unit", fmt::format("an angle of {:.4g} rad", signals_.first_angle),
+          "that exceeds a full turn, and neither the frequency nor the steps confirm unwrapped radians",
+          "name the column theta_deg if it is in degrees; otherwise subtract multiples of 2π, or add the column "
+          "of the frequency");
     // A frequency or speed in a wrong unit cannot be compared with the angle.
     const double ratio = found("frequency_unit") || found("speed_unit") ? 0 : signals_.angle_per_frequency;
     if (within(ratio, 18, 180))
@@ -349,7 +352,7 @@ class Check : Findings {
              "radians were taken as degrees", "name the column theta_rad");
     else if (signals_.fast_angle > constants::turn * 4)
       refuse("angle_unit", fmt::format("an angle that rotates at {:.3g} rad/s", signals_.fast_angle),
-             "no machine swings so fast; degrees taken as radians do", name_deg);
+             "the angle of a machine changes more slowly; degrees were probably taken as radians", name_deg);
   }
 
   [[nodiscard]] double machine_per_record() const { return plant_.mva > 0 ? r_.base.mva / plant_.mva : 1.0; }
@@ -403,7 +406,8 @@ class Check : Findings {
       if (!sound && fit.residual < least / 2) best = &m, least = fit.residual;
     }
     if (best && apart())
-      warn("time_skew", "steps of voltage and current up to a sample apart", "one of them is late",
+      warn("time_skew", "steps of V and of the current up to one sample apart",
+           "one of the channels is delayed",
            "correct its time stamps, or let `swingbank diagnose` fit the skew (SKEW)");
     else if (best)
       refuse(best->kind, "steps of voltage and current that are inconsistent with a machine", best->why,
@@ -427,7 +431,7 @@ class Check : Findings {
   }
   /// Returns the step of the angle as written in the record [rad].
   [[nodiscard]] double turned(const switching::StepInterval& j) const {
-    const std::vector<double>& theta = r_.theta_as_written.empty() ? r_.theta : r_.theta_as_written;
+    const std::vector<double>& theta = r_.written_angle();
     return std::abs(theta[j.after] - theta[j.before]);
   }
 
@@ -442,8 +446,7 @@ class Check : Findings {
     record::Record other;
     other.t = r_.t;
     for (std::size_t k = 0; k < r_.t.size(); ++k) {
-      const double theta = r_.theta_as_written.empty() ? r_.theta[k] : r_.theta_as_written[k];
-      const Reading x = reinterpret({r_.V[k], theta, r_.P[k], r_.Q[k]});
+      const Reading x = reinterpret({r_.V[k], r_.written_angle()[k], r_.P[k], r_.Q[k]});
       other.V.push_back(x.V);
       other.theta.push_back(x.theta);
       other.P.push_back(x.P);
@@ -465,7 +468,8 @@ class Check : Findings {
     if (best && !within(x, 0.06, 1.0))
       refuse("wrong_base", what, "likely " + best->why, best->remedy);
     else
-      warn("wrong_base", what, "machines have 0.1 to 0.4", "check base_mva of the record and of the plant");
+      warn("wrong_base", what, "X\"d of machines is 0.1 to 0.4 pu",
+           "check base_mva of the record and of the plant");
   }
 
   const record::Record& r_;

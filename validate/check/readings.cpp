@@ -23,23 +23,24 @@ struct Hypothesis {
 const std::vector<Hypothesis>& hypotheses() {
   constexpr double kPhases = 3;
   static const std::vector<Hypothesis> list = {
-      {"angle_sign", "the sign of the angle reversed", "an angle that counts lagging as positive is mirrored",
+      {"angle_sign", "the sign of the angle reversed", "the angle may be counted positive when lagging",
        "check it; --columns theta=-NAME reverses it",
        [](const Reading& x) {
          return Reading{x.V, -x.theta, x.P, x.Q};
        }},
       {"angle_sign", "the signs of the angle and of Q reversed",
-       "the phasors may be conjugates: angle and Q count lagging and absorbed as positive",
+       "the phasors may be conjugated: lagging angle and absorbed Q counted as positive",
        "check them; --columns theta=-NAME,Q=-NAME reverses both",
        [](const Reading& x) {
          return Reading{x.V, -x.theta, x.P, -x.Q};
        }},
-      {"q_sign", "the sign of Q reversed", "Q may count what the machine absorbs as positive",
+      {"q_sign", "the sign of Q reversed", "Q may be positive when the machine absorbs it",
        "check it; --columns Q=-NAME reverses it",
        [](const Reading& x) {
          return Reading{x.V, x.theta, x.P, -x.Q};
        }},
-      {"power_sign", "the signs of P and Q reversed", "P and Q may count into the machine",
+      {"power_sign", "the signs of P and Q reversed",
+       "P and Q may be positive into the machine (load convention)",
        "check them; --columns P=-NAME,Q=-NAME reverses both",
        [](const Reading& x) {
          return Reading{x.V, x.theta, -x.P, -x.Q};
@@ -59,13 +60,9 @@ const std::vector<Hypothesis>& hypotheses() {
   return list;
 }
 
-/// Agreement of the simulated with the recorded P and Q.
-struct Fit {
-  /// Sum of the squared errors over that of the squared deviations from the steady state; empty: simulation
-  /// failed.
-  std::optional<double> share;
-  double rms = 0;  ///< RMS error [pu of the record's base]
-};
+/// Residual share of P and Q: sum of the squared errors of the simulation over that of the squared deviations
+/// from the steady state; empty: simulation failed.
+using ResidualShare = std::optional<double>;
 
 class Readings {
  public:
@@ -75,15 +72,16 @@ class Readings {
     const std::optional<playin::Playback> as_is = play(r_);
     if (as_is && as_is->P.size() != r_.P.size()) return std::nullopt;
     constexpr double kFollows = 0.1;
-    as_is_ = as_is ? fit(*as_is, r_, 0) : Fit{};
-    if (as_is_.share && *as_is_.share < kFollows) return std::nullopt;
+    as_is_ = as_is ? residual_share(*as_is, r_, 0) : std::nullopt;
+    if (as_is_ && *as_is_ < kFollows) return std::nullopt;
     if (as_is) delays(*as_is);
     const bool mirrored = r_.angle == record::AngleSource::measured;
     for (const Hypothesis& h : hypotheses()) {
       if (!mirrored && std::string_view(h.kind) == "angle_sign") continue;
       if (h.scales && !may_scale(h)) continue;
       const record::Record other = reinterpreted(h);
-      if (const auto back = play(other)) take(fit(*back, other, 0), {h.kind, h.words, h.why, h.remedy});
+      if (const auto back = play(other))
+        take(residual_share(*back, other, 0), {h.kind, h.words, h.why, h.remedy});
     }
     return best();
   }
@@ -105,29 +103,28 @@ class Readings {
   }
 
   /// Compares the playback with P and Q of the record taken `delay` samples later.
-  [[nodiscard]] static Fit fit(const playin::Playback& back, const record::Record& r, long delay) {
+  [[nodiscard]] static ResidualShare residual_share(const playin::Playback& back, const record::Record& r,
+                                                    long delay) {
     double left = 0, moved = 0;
-    long count = 0;
     const auto n = static_cast<long>(std::min(back.P.size(), r.P.size()));
     for (long k = std::max(0L, -delay); k < std::min(n, n - delay); ++k) {
       const auto i = static_cast<std::size_t>(k), j = static_cast<std::size_t>(k + delay);
       left += std::pow(back.P[i] - r.P[j], 2) + std::pow(back.Q[i] - r.Q[j], 2);
       moved += std::pow(r.P[j] - back.start.P, 2) + std::pow(r.Q[j] - back.start.Q, 2);
-      ++count;
     }
     if (!(moved > 0) || !std::isfinite(left)) return {};
-    return {left / moved, std::sqrt(left / static_cast<double>(std::max(count, 1L)))};
+    return left / moved;
   }
 
   /// Tests delays of P and Q against the same simulated response.
   void delays(const playin::Playback& back) {
     constexpr double kLargestDelay = 0.5;  // s
     const auto most = static_cast<long>(std::min(kLargestDelay * r_.rate(), r_.samples() / 4.0));
-    Fit least;
+    ResidualShare least;
     long at = 0;
     for (long d = -most; d <= most; ++d)
-      if (const Fit f = fit(back, r_, d); f.share && (!least.share || *f.share < *least.share))
-        least = f, at = d;
+      if (const ResidualShare share = residual_share(back, r_, d); share && (!least || *share < *least))
+        least = share, at = d;
     if (at == 0) return;
     const double ms = 1e3 * static_cast<double>(std::abs(at)) * r_.step();
     take(least,
@@ -163,30 +160,29 @@ class Readings {
     return other;
   }
 
-  void take(const Fit& fit, Words words) {
-    if (!fit.share || (best_.share && *best_.share <= *fit.share)) return;
-    best_ = fit;
+  void take(const ResidualShare& share, Words words) {
+    if (!share || (best_ && *best_ <= *share)) return;
+    best_ = share;
     words_ = std::move(words);
   }
 
   [[nodiscard]] std::optional<Finding> best() const {
     constexpr double kUnexplained = 1.0 / 16, kCloser = 3;  // share of the squared movement; ratio of rms
-    if (!best_.share || *best_.share > kUnexplained) return std::nullopt;
-    const double closer =
-        as_is_.share ? std::sqrt(*as_is_.share / *best_.share) : std::numeric_limits<double>::infinity();
+    if (!best_ || *best_ > kUnexplained) return std::nullopt;
+    const double closer = as_is_ ? std::sqrt(*as_is_ / *best_) : std::numeric_limits<double>::infinity();
     if (closer < kCloser) return std::nullopt;
     const std::string what =
-        as_is_.share
-            ? fmt::format("with {} the model follows P and Q {:.0f} times closer", words_.words, closer)
-            : fmt::format("playback into the model fails, but succeeds with {}", words_.words);
+        as_is_ ? fmt::format("with {} the RMS error of P and Q is smaller by a factor of {:.0f}",
+                             words_.words, closer)
+               : fmt::format("playback into the model fails, but succeeds with {}", words_.words);
     return Finding{words_.kind,
-                   as_is_.share ? Severity::warn : Severity::refuse,
+                   as_is_ ? Severity::warn : Severity::refuse,
                    {what, r_.name, words_.why + "; the record was not changed", words_.remedy}};
   }
 
   const record::Record& r_;
   const plant::PlantModel& model_;
-  Fit as_is_, best_;
+  ResidualShare as_is_, best_;
   Words words_;
 };
 

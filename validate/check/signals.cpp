@@ -181,7 +181,7 @@ double angle_per_frequency(const record::Record& r, const std::vector<double>& t
 }
 
 void describe_angle(const record::Record& r, Signals& s) {
-  const std::vector<double>& theta = r.theta_as_written.empty() ? r.theta : r.theta_as_written;
+  const std::vector<double>& theta = r.written_angle();
   s.first_angle = theta.front();
   s.theta_level = median_in(s.event ? until(theta, s.onset) : std::span<const double>(theta));
   std::vector<double> steps = differences(theta);

@@ -22,27 +22,29 @@ struct Mistake {
 };
 inline const std::vector<Mistake>& mistakes() {
   static const std::vector<Mistake> list = {
-      {"swapped_channels", "with P and Q exchanged they fit", "exchange the columns of P and Q",
+      {"swapped_channels", "with P and Q exchanged the steps are consistent",
+       "exchange the columns of P and Q",
        [](const Reading& x) {
          return Reading{x.V, x.theta, x.Q, x.P};
        }},
-      {"power_sign", "with P and Q counted out of the machine they fit", "change the sign of P and Q",
+      {"power_sign", "with P and Q positive out of the machine the steps are consistent",
+       "change the sign of P and Q",
        [](const Reading& x) {
          return Reading{x.V, x.theta, -x.P, -x.Q};
        }},
-      {"angle_unit", "with theta in degrees they fit", "name the column theta_deg",
+      {"angle_unit", "with theta in degrees the steps are consistent", "name the column theta_deg",
        [](const Reading& x) {
          return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
        },
        0.015, 0.1},  // an angle that hardly steps fits in either unit
       // Steps of V hide an angle that is 57 times too small, so the limit is low. This is safe, because an
       // angle that is 57 times too large fits no sound record.
-      {"angle_unit", "with theta in radians they fit", "name the column theta_rad",
+      {"angle_unit", "with theta in radians the steps are consistent", "name the column theta_rad",
        [](const Reading& x) {
          return Reading{x.V, x.theta / constants::degree, x.P, x.Q};
        },
        0.006},
-      {"q_sign", "with the sign of Q changed they fit", "change the sign of Q",
+      {"q_sign", "with the sign of Q reversed the steps are consistent", "change the sign of Q",
        [](const Reading& x) {
          return Reading{x.V, x.theta, x.P, -x.Q};
        }},

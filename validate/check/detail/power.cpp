@@ -44,8 +44,10 @@ std::optional<Doubt> base_doubt(const record::Record& r, const PlantFacts& plant
     const bool systems = near(plant.mva, r.base.mva, 1e-9);
     return Doubt{
         fmt::format("P = {:.4g} MW is {:.2g} times base_mva = {:g}", mw, mw / plant.mva, plant.mva),
-        systems ? "base_mva in [plant] is probably the system's base"
-                : "base_mva in [plant] is not that machine's, or the record is of another unit or of several",
+        systems
+            ? "base_mva in [plant] is probably the system's base"
+            : "base_mva in [plant] is not the MVA of this machine, or the record contains another unit or several "
+              "units",
         "write the machine's MVA"};
   }
   const std::string what =
@@ -53,7 +55,7 @@ std::optional<Doubt> base_doubt(const record::Record& r, const PlantFacts& plant
   for (const BaseSlip& slip : base_slips(r, plant))
     if (slip.factor < 1 && on_machine * slip.factor >= 0.05 && on_machine * slip.factor <= 1.2)
       return Doubt{what, "likely " + slip.why, slip.remedy};
-  return Doubt{what, "no machine runs at that",
+  return Doubt{what, "the apparent power exceeds the capability of any machine",
                "check the units of P and Q, base_mva of the record and of the plant"};
 }
 
@@ -74,15 +76,15 @@ std::optional<Doubt> dispatch_doubt(const record::Record& r, const PlantFacts& p
       "compare bus, unit and bases with the case"};
   if (is_ratio(1)) {
     doubt.why =
-        "the apparent power is that of the case and its angle is not: wrong signs of P and Q, or a power-factor angle "
-        "given as the angle of the current (phi), have this effect";
+        "the apparent power equals that of the case, but P and Q differ: reversed signs of P or Q, or the "
+        "power-factor angle φ given as the angle of the current";
     doubt.remedy =
         "give P and Q, or the angle of the current's phasor against the same reference as the voltage's";
   } else if (is_ratio(1.0 / 3)) {
     doubt.why = "a third of the case's is the power of one phase";
     doubt.remedy = "give the power of all three phases";
   } else if (is_ratio(std::numbers::sqrt3) || is_ratio(1 / std::numbers::sqrt3)) {
-    doubt.why = "sqrt(3) lies between voltages to neutral and between phases";
+    doubt.why = "sqrt(3) is the ratio of line-to-line to line-to-neutral voltage";
     doubt.remedy = "check base_kv and the voltage from which P and Q were computed";
   } else if (r.per_unit_power && !near(plant.mva, r.base.mva, 0.05) &&
              (is_ratio(plant.mva / r.base.mva) || is_ratio(r.base.mva / plant.mva))) {
@@ -129,8 +131,9 @@ std::optional<Doubt> sign_doubt(const record::Record& r, const PlantFacts& plant
   const std::string rise =
       fmt::format("Q rises with V at its steps, by {:.4g} Mvar per pu", rises * r.base.mva);
   if (negative && with_V)
-    return Doubt{mw + ", and " + rise, "P and Q may count into the machine, or be exchanged",
-                 "check them; --columns P=-NAME,Q=-NAME reverses both signs"};
+    return Doubt{mw + ", and " + rise,
+                 "P and Q may be positive into the machine (load convention), or exchanged",
+                 "check signs and columns; --columns P=-NAME,Q=-NAME reverses both signs"};
   if (with_V)
     return Doubt{
         rise,
@@ -139,7 +142,7 @@ std::optional<Doubt> sign_doubt(const record::Record& r, const PlantFacts& plant
   if (negative)
     return Doubt{
         mw,
-        "a generator's is positive: P counts into the machine, or it is exchanged with Q, or the machine "
+        "P of a generator is positive: P uses the load convention, P and Q are exchanged, or the machine "
         "runs as a motor",
         "check it; --columns P=-NAME reverses the sign"};
   return std::nullopt;

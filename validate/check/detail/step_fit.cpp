@@ -4,14 +4,6 @@
 #include <cmath>
 
 namespace swingbank::validate::check {
-namespace {
-
-double written_theta(const record::Record& r, std::size_t k) {
-  return r.theta_as_written.empty() ? r.theta[k] : r.theta_as_written[k];
-}
-
-}  // namespace
-
 StepFit fit_steps(const record::Record& r, const std::vector<switching::StepInterval>& steps, int delay) {
   double cross = 0, current = 0, voltage = 0, count = 0;  // sums of Re(dV conj(-j dI)), |dI|^2, |dV|^2
   struct Phasors {
@@ -19,7 +11,7 @@ StepFit fit_steps(const record::Record& r, const std::vector<switching::StepInte
   };
   const auto at = [&](std::size_t k) {
     const auto late = static_cast<std::size_t>(static_cast<long>(k) + delay);
-    const Complex v = std::polar(std::abs(r.V[k]), written_theta(r, k));
+    const Complex v = std::polar(std::abs(r.V[k]), r.written_angle()[k]);
     return Phasors{v, std::conj(Complex(r.P[late], r.Q[late]) / v)};
   };
   for (const auto& j : steps) {
