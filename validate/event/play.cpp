@@ -10,6 +10,11 @@
 
 namespace swingbank::validate::event {
 
+InputError playback_failure(const std::string& record, const std::string& why) {
+  return InputError({"playback of the record fails", record, why,
+                     "check the model's parameters and the record's base and units"});
+}
+
 std::vector<switching::Switching> switchings_at(const FitEvent& event, const EventState& state) {
   auto switchings = event.switchings;
   for (std::size_t k = 0; k < state.switchings.size(); ++k) switchings[k].time = state.switchings[k];

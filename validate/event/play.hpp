@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "base/problem.hpp"
 #include "sim/plant/under_test.hpp"
 #include "validate/event/event.hpp"
 
@@ -49,6 +50,9 @@ struct Playing {
   std::shared_ptr<const playin::TrajectoryCache>* cache = nullptr;  ///< as in playin::PlaybackRun
   double until = 1e300;                                             ///< later samples are not simulated [s]
 };
+
+/// Error of a record whose playback fails for the reason `why`.
+InputError playback_failure(const std::string& record, const std::string& why);
 
 /// Returns the event's switchings with the times and phase jumps of `state`.
 std::vector<switching::Switching> switchings_at(const FitEvent& event, const EventState& state);

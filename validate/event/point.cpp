@@ -13,6 +13,7 @@
 #include "validate/event/detail/turns.hpp"
 #include "validate/event/event.hpp"
 #include "validate/event/play.hpp"
+#include "validate/plant/unknown_keys.hpp"
 
 namespace swingbank::validate::event {
 namespace {
@@ -60,7 +61,7 @@ void check_part(Config& c, const std::string& at) {
     if (share == c.has(at + key))
       c.problem(at,
                 share ? at + " with share and " + (key + 1) : at + " without share and without " + (key + 1),
-                "its part is given once, by share or by P_MW and Q_Mvar", "give one of them");
+                "the power of the unit is given either by share or by P_MW and Q_Mvar", "give one of them");
 }
 
 void read_model(const std::filesystem::path& file, OtherUnit& unit, Problems& problems) {
@@ -87,10 +88,7 @@ MeasuredPoint read_point(Config& c, const std::filesystem::path& tried) {
   if (c.has("unit")) c.ignore("unit");  // its keys are checked below
   for (int k = 0; c.has(fmt::format("unit[{}]", k)); ++k) {
     const std::string at = fmt::format("unit[{}]", k);
-    for (const std::string& key : c.keys(at))
-      if (key != "model" && key != "share" && key != "P_MW" && key != "Q_Mvar")
-        c.problem(at + "." + key, "unknown key " + key, "a unit has model, and share or P_MW and Q_Mvar",
-                  "remove it");
+    plant::refuse_unknown_keys(c, at, "[[unit]]", {"model", "share", "P_MW", "Q_Mvar"});
     const std::filesystem::path model =
         c.file(at + ".model", {.meaning = "plant file of the unit, relative to the folder of this file"});
     OtherUnit unit = read_part(c, at);
@@ -108,11 +106,11 @@ MeasuredPoint read_point(Config& c, const std::filesystem::path& tried) {
   }
   if (!found)
     c.problem("unit", "the plant file " + tried.string() + " is none of the units",
-              "its part of the record is the rest after subtraction of the others",
+              "its power is the record minus the power of the other units",
               "list it as a [[unit]] with model = its path");
   if (shares >= 1 - 1e-9)
-    c.problem("unit", fmt::format("shares of {:g} without the unit under test", shares),
-              "nothing remains for it", "give every unit its share of the whole");
+    c.problem("unit", fmt::format("the shares of the other units add up to {:g}", shares),
+              "no power remains for the unit under test", "give every unit its share of the whole");
   for (const Problem& p : problems.list()) c.problem("unit", p.what + " at " + p.where, p.why, p.remedy);
   c.raise();
   return point;

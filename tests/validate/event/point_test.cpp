@@ -139,7 +139,8 @@ TEST_F(TwoUnits, ReadsPointFiles) {
   EXPECT_THAT(test::messages([&] { load(cable + "what = 2\n" + a); }),
               Contains(HasSubstr("unknown key what")));
   EXPECT_THAT(test::messages([&] { load(b + "share = 0.5\n"); }), Contains(HasSubstr("none of the units")));
-  EXPECT_THAT(test::messages([&] { load(a + b + "share = 1.0\n"); }), Contains(HasSubstr("nothing remains")));
+  EXPECT_THAT(test::messages([&] { load(a + b + "share = 1.0\n"); }),
+              Contains(HasSubstr("no power remains")));
   EXPECT_THAT(test::messages([&] { load(a + b + "P_MW = 30\nwhat = 1\n"); }),
               AllOf(Contains(HasSubstr("Q_Mvar")), Contains(HasSubstr("what"))));
   EXPECT_THAT(test::messages([&] { load(a + "[[unit]]\nmodel = \"c.toml\"\nshare = 0.1\n"); }),

@@ -149,9 +149,9 @@ void drop_peaks(FitEvent& event) {
        ++k)  // only the difference: theta may include the angle of a collector
     r.theta[k] += without[k] - with_peaks[k];
   r.notes.emplace_back(
-      "The frequency has peaks at the switchings, where a meter smooths the step of the angle "
-      "over its window. The angle is integrated from the samples outside the peaks; samples "
-      "after a switching are not compared.");
+      "The frequency has peaks at the switching times: the meter spreads the phase jump over its "
+      "window. The angle is integrated from the samples outside the peaks; samples after a "
+      "switching are not compared.");
 }
 
 void find_turns(const sim::plant::PlantUnderTest& tested, FitEvent& event) {
