@@ -112,7 +112,7 @@ class Selection {
   static void require(const Fit& f) {
     if (!f.failed.empty())
       throw InputError(
-          {"the model cannot be fitted", "the model", f.failed, "correct the model or leave the record out"});
+          {"the model cannot be fitted", "the model", f.failed, "correct the model, or exclude the record"});
   }
   /// Computes the Hessian of the cost at the full fit, and the location of that fit, in units of the priors.
   void learn_curvature() {

@@ -15,9 +15,9 @@ WhitenedEvents::WhitenedEvents(std::vector<event::FitEvent> events, NoiseModel n
 
 WhitenedEvents WhitenedEvents::with(NoiseModel noise) const {
   if (noise.size() != events_.size())
-    throw std::logic_error("a noise model has one entry for each event, and these are " +
-                           std::to_string(noise.size()) + " entries for " + std::to_string(events_.size()) +
-                           " events: measure the noise of all events together");
+    throw std::logic_error("a noise model needs one entry for each event: " + std::to_string(noise.size()) +
+                           " entries for " + std::to_string(events_.size()) +
+                           " events; measure the noise of all events together");
   WhitenedEvents same = *this;
   same.noise_ = std::move(noise);
   same.which_.resize(events_.size());

@@ -107,7 +107,7 @@ Acceptance read_acceptance(const std::string& what) {
   if (what.empty()) return presets().front();
   if (const Acceptance* named = preset(what)) return *named;
   if (!std::filesystem::exists(what))
-    throw InputError({"no limits '" + what + "'", "--accept", "neither a preset nor a file has that name",
+    throw InputError({"no limits '" + what + "'", "--accept", "no preset or file has this name",
                       fmt::format("give a file (configs/accept/README.md) or one of {}",
                                   fmt::join(acceptance_presets(), ", "))});
   Config file{std::filesystem::path(what)};

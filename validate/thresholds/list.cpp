@@ -47,7 +47,7 @@ nlohmann::json ruling_json(const Ruling& ruling) {
   const CriterionRecord& r = criterion_record(ruling.by);
   nlohmann::json j = {{"criterion", r.name},   {"quantity", r.asks}, {"adequate", ruling.adequate},
                       {"limit", ruling.limit}, {"unit", r.unit},     {"where", ruling.where}};
-  j["value"] = std::isfinite(ruling.value) ? nlohmann::json(ruling.value) : nlohmann::json(nullptr);
+  j["value"] = ruling.value;
   return j;
 }
 

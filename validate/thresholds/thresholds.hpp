@@ -30,8 +30,9 @@ struct Evidence {
                    "(decision 61)"};
   /// Largest gain in evidence that a longer fit is expected to bring [chi2].
   Threshold within_reach{"evidence.within_reach", 200, "chi2",
-                         "largest gain that a long fit is expected to add to a short one; hypotheses further "
-                         "behind the best are neither refined nor judged (decision 61)"};
+                         "largest gain that a long fit is expected to add to a short one; hypotheses whose "
+                         "evidence is lower than the best by more than this are neither refined nor judged "
+                         "(decision 61)"};
   /// Share of the leading hypothesis's evidence. A better optimum of the base model that explains more than
   /// this share restarts the diagnosis [-].
   Threshold escape{
@@ -40,7 +41,8 @@ struct Evidence {
   /// Largest difference in chi2 at which a completed fit replaces a short one [chi2].
   Threshold same_fit{
       "evidence.same_fit", 0.5, "chi2",
-      "a complete fit replaces a short one, which has no standard errors, unless its chi2 is higher by more"};
+      "a complete fit replaces a short one (without standard errors), unless its chi2 is higher by more than "
+      "this"};
 };
 inline constexpr Evidence evidence;  ///< the thresholds in use
 
@@ -88,7 +90,8 @@ struct HeldOut {
                   "cannot predict it"};
   /// Share of that event's chi2 that must remain when the fit excludes the event [-].
   Threshold unpredicted{"held_out.unpredicted", 0.5, "share of that event's chi2",
-                        "and if a larger share of its chi2 remains when the fit excludes it"};
+                        "an effect acts in one event only if, in addition, a larger share of that event's "
+                        "chi2 remains when the fit excludes the event"};
 };
 inline constexpr HeldOut held_out;  ///< the thresholds in use
 
@@ -176,8 +179,8 @@ struct UserModels {
       "user-defined models whose first fit has a larger reduced chi-square are not judged (decision 21)"};
   /// Additional evidence for a user-defined model that depends on the record's time [chi2].
   Threshold own_time{"user_models.own_time", 6, "chi2",
-                     "additional evidence of a model of the record's own time, which is meaningful only if "
-                     "all records begin alike (decision 21)"};
+                     "additional evidence required of a model that depends on the record's time, which is "
+                     "meaningful only if all records start at the same time before the event (decision 21)"};
   /// Additional evidence for a user-defined model whose output is proportional to the initial value [chi2].
   Threshold in_proportion{"user_models.in_proportion", 3, "chi2",
                           "additional evidence of a model in proportion to the initial value (decision 21)"};

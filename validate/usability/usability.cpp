@@ -191,7 +191,7 @@ Usability check_usability(const plant::PlantModel& model, const std::vector<Oper
         fmt::format("the records are those of the {} alone, without the plant's operating point",
                     record::component_name(model.reading.component));
   else if (states.empty())
-    all.not_checked = "the model follows no record, so there is no operating point";
+    all.not_checked = "no record could be played in, so no operating point is known";
   else if (const auto at =
                std::ranges::find_if(states, [](const auto& s) { return !(std::abs(s.voltage) > 0); });
            at != states.end())
