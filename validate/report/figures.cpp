@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace swingbank::validate::report {
@@ -12,6 +13,10 @@ std::string ratio_text(double ratio) {
 }
 
 std::string times_noise(double ratio) { return ratio_text(ratio) + (std::isfinite(ratio) ? " ×" : ""); }
+
+std::ptrdiff_t characters(std::string_view text) {
+  return std::ranges::count_if(text, [](unsigned char c) { return (c & 0xC0) != 0x80; });
+}
 
 std::string probability_text(double probability) {
   const double percent = 100 * probability;

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "validate/report/document.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::report {
 
@@ -65,17 +66,14 @@ std::string csv(const Table& table) {
 }
 
 std::string padded(const Table& table, std::size_t left) {
-  const auto length = [](const std::string& s) {
-    return std::ranges::count_if(s, [](unsigned char c) { return (c & 0xC0) != 0x80; });
-  };
   std::vector<std::ptrdiff_t> width;
-  for (const auto& h : table.header) width.push_back(length(h));
+  for (const auto& h : table.header) width.push_back(characters(h));
   for (const auto& row : table.rows)
-    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], length(row[i].text));
+    for (std::size_t i = 0; i < row.size(); ++i) width[i] = std::max(width[i], characters(row[i].text));
   std::string out;
   const auto line = [&](const auto& row, const auto& text) {
     for (std::size_t i = 0; i < row.size(); ++i) {
-      const std::string pad(static_cast<std::size_t>(width[i] - length(text(row[i]))), ' ');
+      const std::string pad(static_cast<std::size_t>(width[i] - characters(text(row[i]))), ' ');
       out += i < left ? text(row[i]) + pad + "  " : pad + text(row[i]) + "  ";
     }
     out.erase(out.find_last_not_of(' ') + 1);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "validate/report/document.hpp"
+#include "validate/report/figures.hpp"
 
 namespace swingbank::validate::report {
 namespace {
@@ -15,10 +16,7 @@ constexpr double kRow = 26, kPlotHeight = 270;  // height of a named row, and of
 constexpr double kPlotTop = 52, kPlotBottom = 42, kPlotRight = 24, kGap = 12, kLegendLine = 20, kLetter = 6.7;
 constexpr const char *kInk = "#1b2733", *kSoft = "#5b6b7b", *kGrid = "#e4e9ee", *kFrame = "#c9d3dc";
 
-double letters(const std::string& s) {
-  return static_cast<double>(
-      std::ranges::count_if(s, [](unsigned char c) { return (c & 0xC0) != 0x80; }));  // characters of UTF-8
-}
+double letters(const std::string& s) { return static_cast<double>(characters(s)); }
 
 struct Words {
   const char* anchor = "start";

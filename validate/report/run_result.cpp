@@ -30,7 +30,7 @@ class Object {
     try {
       value = at->get<T>();
     } catch (const json::exception&) {
-      return fault(key, "its type is wrong");
+      return fault(key, "it has the wrong type");
     }
     if constexpr (std::is_same_v<T, double>)
       if (!std::isfinite(value)) fault(key, "it is not finite");
@@ -50,7 +50,7 @@ class Object {
 void read_parameters(Object& o, const std::string& where, RunResult& r, Problems& problems) {
   json list;
   o.get("per_parameter", list);
-  if (!list.is_array()) return o.fault("per_parameter", "it is no list");
+  if (!list.is_array()) return o.fault("per_parameter", "it is not a list");
   for (const auto& item : list) {
     Object p(item, where + " per_parameter", problems);
     ParameterResult score;
@@ -81,7 +81,7 @@ void read_coverage(Object& o, const std::string& where, RunResult& r, Problems& 
 /// Reads key `several` of train/run/README.md.
 void read_several(Object& o, const std::string& where, RunResult& r, Problems& problems) {
   if (!o.value().contains("several")) return;
-  if (!o.value()["several"].is_array()) return o.fault("several", "it is no list");
+  if (!o.value()["several"].is_array()) return o.fault("several", "it is not a list");
   for (const auto& item : o.value()["several"]) {
     Object one(item, where + " several", problems);
     SeveralRecords s;
@@ -101,7 +101,7 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   std::ifstream in(file);
   const json parsed = json::parse(in, nullptr, false);
   if (!parsed.is_object()) {
-    problems.add("no JSON object", file.string(), "the file is damaged or is no result",
+    problems.add("not a JSON object", file.string(), "the file is damaged or is not a result",
                  "remove it or make the run again");
     return r;
   }

@@ -23,7 +23,6 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kTableFourNetworks = {"cnn", "lstm", "gru"};
 
-std::string figure(double v) { return std::isfinite(v) ? fmt::format("{:.3g}", v) : "–"; }
 /// Returns the shade of MSE / baseline: 0 at a ratio of 0.1, 1 at a ratio of 1, logarithmic between.
 double shade(double ratio) { return std::clamp(1 + std::log10(ratio), 0.0, 1.0); }
 
@@ -81,12 +80,12 @@ std::vector<Cell> score_row(const TableBlock& block, const RowKey& key) {
     row.insert(row.end(), {"missing", thesis(block, key), "–", "–", "–", "–", "–", "–", "–"});
     return row;
   }
-  row.emplace_back(figure(run->mse));
+  row.emplace_back(shown(run->mse));
   row.emplace_back(thesis(block, key));
-  row.emplace_back(figure(run->baseline_mse));
-  row.emplace_back(figure(run->ratio), shade(run->ratio));
-  row.emplace_back(figure(run->H_ratio), shade(run->H_ratio));
-  row.emplace_back(figure(run->mse_varied_only));
+  row.emplace_back(shown(run->baseline_mse));
+  row.emplace_back(shown(run->ratio), shade(run->ratio));
+  row.emplace_back(shown(run->H_ratio), shade(run->H_ratio));
+  row.emplace_back(shown(run->mse_varied_only));
   row.emplace_back(fmt::format("{} / {}", run->train_rows, run->test_rows));
   if (run->epochs > 0) {
     row.emplace_back(fmt::format("{} of {}", run->best_epoch, run->epochs));
@@ -115,12 +114,12 @@ std::vector<Cell> mean_row(const TableBlock& block) {
       all_in_thesis = false;
   }
   return {fmt::format("mean of {}", block.runs.size()),
-          figure(mse),
-          all_in_thesis ? figure(thesis_mse) : "–",
-          figure(baseline),
-          Cell(figure(ratio), shade(ratio)),
-          Cell(figure(h), shade(h)),
-          figure(varied),
+          shown(mse),
+          all_in_thesis ? shown(thesis_mse) : "–",
+          shown(baseline),
+          Cell(shown(ratio), shade(ratio)),
+          Cell(shown(h), shade(h)),
+          shown(varied),
           "",
           "",
           ""};
@@ -192,7 +191,7 @@ Table score_table(const TableBlock& block) {
       std::ranges::any_of(expected_rows(block), [](const RowKey& k) { return k.generator > 0; });
   Table table{heading(block) + ". " + made_with(block),
               {left_out ? "generator" : "network", "MSE", "thesis MSE", "predict-the-mean MSE",
-               "MSE / predict-the-mean", "the same, H alone", "MSE without constant parameters",
+               "MSE / predict-the-mean", "ratio for H alone", "MSE without constant parameters",
                "training / test rows", "best epoch", "time per epoch"},
               {}};
   for (const auto& row : expected_rows(block)) table.rows.push_back(score_row(block, row));
@@ -221,10 +220,10 @@ Table parameter_table(const TableBlock& block) {
             worst = *q.relative, worst_run = RowKey{run.network, run.generator}.label();
         }
     if (values.empty())
-      table.rows.push_back({p.name, p.unit, figure(mse), "constant", "constant", "–"});
+      table.rows.push_back({p.name, p.unit, shown(mse), "constant", "constant", "–"});
     else
-      table.rows.push_back({p.name, p.unit, figure(mse), Cell(figure(median(values)), shade(median(values))),
-                            Cell(figure(worst), shade(worst)), worst_run});
+      table.rows.push_back({p.name, p.unit, shown(mse), Cell(shown(median(values)), shade(median(values))),
+                            Cell(shown(worst), shade(worst)), worst_run});
   }
   return table;
 }
@@ -309,9 +308,9 @@ void add_choice(const std::vector<RunResult>& results, const std::string& table,
   }
   if (of.empty()) return;
   Table choice{
-      "Choice of a recipe, nested: MSE / predict-the-mean on generators that the table's run "
-      "trains on, their geometric mean; the excluded generator was not used. The smallest "
-      "value of a row is chosen.",
+      "Selection of a recipe by nested cross-validation: geometric mean of MSE / predict-the-mean over the "
+      "generators on which the run of the table trains. The excluded generator was not used. The smallest "
+      "value of a row is selected.",
       {"excluded", "evaluated on"},
       {}};
   for (const auto& network : networks) choice.header.push_back(method_name(network));
@@ -320,9 +319,8 @@ void add_choice(const std::vector<RunResult>& results, const std::string& table,
     for (const auto& [network, sum] : sums) runs = std::max(runs, sum.runs);
     std::vector<Cell> row = {fmt::format("#{}", generator), fmt::format("{} others", runs)};
     for (const auto& network : networks)
-      row.emplace_back(sums.contains(network)
-                           ? figure(std::exp(sums.at(network).log_ratio / sums.at(network).runs))
-                           : "–");
+      row.emplace_back(
+          sums.contains(network) ? shown(std::exp(sums.at(network).log_ratio / sums.at(network).runs)) : "–");
     choice.rows.push_back(std::move(row));
   }
   to.document.add(choice);
@@ -337,7 +335,7 @@ void add_controls(const std::vector<RunResult>& results, const std::string& tabl
   for (const auto& r : results)
     if (r.shuffled && r.table == table)
       controls.rows.push_back({method_name(r.network), r.preset,
-                               r.generator > 0 ? fmt::format("#{}", r.generator) : "–", figure(r.ratio)});
+                               r.generator > 0 ? fmt::format("#{}", r.generator) : "–", shown(r.ratio)});
   if (!controls.rows.empty()) to.document.add(controls);
 }
 
@@ -345,7 +343,7 @@ std::string remark(const std::string& table) {
   if (table == "IV")
     return fmt::format(
         "The thesis also ran EPRI's PPPD on ten of these events: MSE {:g}, the CNN on the same events {:g}. "
-        "Compare the former with the row of predict-the-mean.",
+        "Compare the MSE of PPPD with the row of predict-the-mean.",
         kThesisPppd, kThesisCnnOnPppdEvents);
   if (table == "VI")
     return fmt::format(
@@ -401,7 +399,8 @@ TablesReport make_tables(const std::vector<RunResult>& results, const Provenance
     if (table_rank(r.table) == kThesisTables.size()) others.emplace(r.table, r.title);
   if (!tasks.empty()) {
     to.document.add(
-        Paragraph{"Green: the thesis's MSE or less, under noise the floor. Orange: no better than the mean.",
+        Paragraph{"Green: at most the thesis's MSE (with noise: the floor). Orange: no better than "
+                  "predict-the-mean.",
                   Paragraph::Kind::plain, false});
     for (const auto& table : overview_tables(tasks)) to.document.add(table);
   }

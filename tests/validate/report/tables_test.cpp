@@ -310,7 +310,7 @@ TEST_F(TablesTest, ReportsAllFaultsOfResults) {
   const auto all = test::messages([&] { read(); });
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("'ratio'"), HasSubstr("a.json"), HasSubstr("missing"))));
   EXPECT_THAT(all, Contains(AllOf(HasSubstr("'mse'"), HasSubstr("type"))));
-  EXPECT_THAT(all, Contains(AllOf(HasSubstr("no JSON object"), HasSubstr("b.json"))));
+  EXPECT_THAT(all, Contains(AllOf(HasSubstr("not a JSON object"), HasSubstr("b.json"))));
   std::filesystem::remove(folder_ / "a.json");
   std::filesystem::remove(folder_ / "b.json");
   EXPECT_THAT(test::messages([&] { read(); }), ElementsAre(HasSubstr("second result of the same run")));

@@ -243,9 +243,9 @@ Table parameter_comparison(const Task& task, double noise) {
 
 Table several_table(const Task& task) {
   Table table{
-      "Several records of one plant: raw MSE of the plants with three test records or more, "
-      "from the first of them, from three, from up to twelve; by the mean of the records' "
-      "estimates and, where the method gives posteriors, by their product.",
+      "Several records of one plant: raw MSE for plants with at least three test records, estimated from "
+      "one, three or up to twelve records. \"mean\": mean of the records' estimates; \"product\": product "
+      "of their posteriors.",
       {"method", "noise", "plants", "records", "mean", "product"},
       {}};
   for (const auto& method : task.methods())

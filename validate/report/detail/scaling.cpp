@@ -152,8 +152,8 @@ Table scaling_table(const std::vector<ScalingSeries>& series) {
       "Power law MSE ∝ N^b (N training rows), log-log regression, 95 % confidence intervals; values beyond the largest "
       "N are extrapolated. Core-hours: one network, at the time per row measured at the largest N.",
       {"", "sizes", "training rows", "exponent b of the rows", "exponent of the time",
-       "MSE at the thesis's training rows", "core-hours for that", "the thesis's MSE",
-       "training rows required", "core-hours for that"},
+       "MSE at the thesis's training rows", "core-hours for these rows", "the thesis's MSE",
+       "training rows required", "core-hours for these rows"},
       {}};
   std::vector<std::vector<Cell>> columns;
   for (const auto& s : series) {

@@ -10,8 +10,6 @@ struct ThesisTable {
   std::string_view number, title, machine;
   double train_rows;  ///< IV: 60 % of the 390,000 stable of 720,000 runs; V, VI: nine tenths of 60,000
 };
-/// Epochs of training.
-inline constexpr double kThesisEpochs = 100;
 inline constexpr std::array<ThesisTable, 3> kThesisTables = {{
     {"IV", "IEEE 14-bus, GENROU at one bus", "GENROU", 234e3},
     {"V", "IEEE 39-bus, all GENCLS, one generator left out", "GENCLS", 54e3},
