@@ -199,8 +199,8 @@ std::shared_ptr<Comparison> compare_all(const std::shared_ptr<const Plant>& plan
     compare::Played played = compare::play_and_judge(
         "model", *plant, compare::measurements(samples, options, plant->plant.mva), options, by);
     if (played.events.empty())
-      throw InputError({"the model cannot follow the records", plant->origin, played.fitness.not_judged,
-                        "correct the model's parameters or the record"});
+      throw InputError({"the model cannot be simulated with the records", plant->origin,
+                        played.fitness.not_judged, "correct the model's parameters or the record"});
     auto result = std::make_shared<Comparison>();
     result->plant = plant;
     result->adequacy = compare::judge(played.events);

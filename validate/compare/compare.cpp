@@ -231,7 +231,7 @@ void explain(EventComparison& e, switching::StepShape step_shape, bool tried, co
   if (!e.record.ignored.empty()) {
     std::string all;
     for (const auto& name : e.record.ignored) all += (all.empty() ? "" : ", ") + name;
-    e.notes.push_back("Columns that were not read: " + all + ".");
+    e.notes.push_back("Ignored columns: " + all + ".");
   }
 }
 
@@ -435,8 +435,8 @@ EventComparison compare_event(const plant::PlantModel& model, const Measurement&
   if (options.input == PlaybackInput::power) {  // with the switching times detected in the voltage
     if (!no_angle) play(model, PlaybackInput::power, options.play_in, e);
     e.notes.push_back(
-        "P and Q are played in, and no network holds the angle. A small lasting error of P "
-        "therefore grows into one of frequency and speed; both are shown, but the verdict uses "
+        "P and Q are played in, and no network fixes the angle. A small constant error of P "
+        "therefore grows into an error of frequency and speed; both are shown, but the verdict uses "
         "voltage and field only. During a fault the voltage is many times more sensitive to "
         "noise of P and Q, so this window is not judged.");
   }

@@ -177,8 +177,6 @@ double ChannelNoise::slow() const {
   return std::max(sum, 0.0);
 }
 
-ChannelNoise white_noise(double sigma) { return {.sigma = sigma, .covariance = {sigma * sigma}}; }
-
 ChannelNoise estimate_noise(std::span<const double> quiet, double floor) {
   const auto n = quiet.size();
   const int most = std::clamp(static_cast<int>(n) / 15, 0, 8);

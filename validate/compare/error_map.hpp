@@ -36,8 +36,6 @@ struct ChannelNoise {
 /// order by BIC, at most 8). `floor` [pu] is added as white noise, because interpolation leaves residuals in
 /// records without noise. Needs at least 3 samples.
 ChannelNoise estimate_noise(std::span<const double> quiet, double floor);
-/// White noise of known standard deviation `sigma` [pu].
-ChannelNoise white_noise(double sigma);
 
 /// Time-frequency bin of an error map.
 struct TimeFrequencyBin {

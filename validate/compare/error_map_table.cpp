@@ -49,9 +49,10 @@ report::Cell map_cell(const LabelledMap& m, const std::string& window, std::stri
   return cell;
 }
 
-std::vector<std::string> columns(bool with_event) {
+/// `event`: heading of the column of the events; empty: no such column.
+std::vector<std::string> columns(const std::string& event) {
   std::vector<std::string> names;
-  if (with_event) names.emplace_back("event");
+  if (!event.empty()) names.push_back(event);
   for (const char* name : {"channel", "window", "RMS", "all"}) names.emplace_back(name);
   for (const Band& band : error_bands()) names.emplace_back(band.name);
   return names;
@@ -121,19 +122,20 @@ std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events) {
   return maps;
 }
 
-report::Table map_table(const std::vector<LabelledMap>& maps) {
+report::Table map_table(const std::vector<LabelledMap>& maps, const std::string& subject) {
   std::set<std::string> events;
   for (const auto& m : maps) events.insert(m.event);
   const bool with_event = events.size() > 1;
-  report::Table table{kCaption, columns(with_event), {}};
+  report::Table table{kCaption, columns(with_event ? subject : ""), {}};
   for (const auto& m : maps)
     for (std::size_t w = 0; w < m.windows->size(); ++w)
       add_row(table, m, (*m.windows)[w].name, bins_of(m, w), with_event);
   return table;
 }
 
-report::Table worst_map_table(const std::vector<LabelledMap>& maps) {
-  report::Table table{std::string(kCaption) + " Each bin shows the worst of all events.", columns(false), {}};
+report::Table worst_map_table(const std::vector<LabelledMap>& maps, const std::string& subject) {
+  report::Table table{
+      fmt::format("{} Each bin shows the worst of all {}s.", kCaption, subject), columns(""), {}};
   std::vector<std::string> channels;
   for (const auto& m : maps)
     if (std::ranges::find(channels, m.channel) == channels.end()) channels.push_back(m.channel);
@@ -194,9 +196,7 @@ nlohmann::json map_json(const std::vector<Window>& windows, const ErrorMap& map)
   auto rows = nlohmann::json::array();
   const auto add = [&](const std::string& window, std::string_view band, const TimeFrequencyBin& bin) {
     nlohmann::json j = {{"window", window}, {"band", band}, {"values", bin.values}};
-    const auto number = [&](double v) {
-      return bin.empty() || !std::isfinite(v) ? nlohmann::json(nullptr) : nlohmann::json(v);
-    };
+    const auto number = [&](double v) { return bin.empty() ? nlohmann::json(nullptr) : nlohmann::json(v); };
     j["rms_pu"] = number(bin.rms);
     j["normalised_rms"] = number(bin.normalised);
     j["normalised_bound"] = number(bin.bound);

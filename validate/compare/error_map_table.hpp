@@ -24,10 +24,10 @@ std::vector<LabelledMap> maps_of(const std::vector<EventComparison>& events);
 
 /// Table with one row per event, channel and window: RMS in the channel's unit, then the normalised RMS over
 /// all frequencies and per band. A star marks values above their bound, "–" a band for which the window is
-/// too short. The event column is omitted if there is one event only.
-report::Table map_table(const std::vector<LabelledMap>& maps);
+/// too short. The event column is omitted if there is one event only. `subject`: the name of an event.
+report::Table map_table(const std::vector<LabelledMap>& maps, const std::string& subject = "event");
 /// The same table with the worst event in each bin (highest normalised RMS / bound).
-report::Table worst_map_table(const std::vector<LabelledMap>& maps);
+report::Table worst_map_table(const std::vector<LabelledMap>& maps, const std::string& subject = "event");
 
 /// Sentence that names, per channel, the window and band furthest above the bound, and the number of events
 /// in which this bin exceeds its bound.

@@ -14,20 +14,12 @@ namespace {
 
 constexpr const char* kErrorCaption =
     "Residual (modelled − measured) over the whole record. Noise σ: standard deviation of the residual before "
-    "the event. RMS / noise: quotient of the two. Maximum error: largest "
+    "the event. RMS / noise: ratio of the two. Maximum error: largest "
     "absolute value, with its time. A star marks a channel whose normalised RMS exceeds its bound "
     "(error map).";
 
 std::string quantity(double value, const ChannelComparison& c) {
   return fmt::format("{:.4g} {}", value * c.scale, c.unit);
-}
-
-/// Returns the channel of an event in a model's playback; nullptr if there is none.
-const ChannelComparison* find_channel(const Played& played, std::size_t event, const std::string& name) {
-  if (event >= played.events.size()) return nullptr;
-  const auto& channels = played.events[event].channels;
-  const auto c = std::ranges::find(channels, name, &ChannelComparison::name);
-  return c == channels.end() ? nullptr : &*c;
 }
 
 void add_cells(std::vector<report::Cell>& row, const ChannelComparison* c) {
@@ -57,7 +49,7 @@ report::Table error_table(const std::vector<Played>& played, const EventUse& use
     for (const ChannelComparison& c : event.channels) {
       std::vector<report::Cell> row = {event.record.name, c.name};
       if (use.fitted) row.emplace_back(use.of(event.record.name));
-      for (const Played& p : played) add_cells(row, find_channel(p, e, c.name));
+      for (const Played& p : played) add_cells(row, find_channel(&p, e, c.name));
       if (single) {
         row.emplace_back(quantity(c.whole.worst, c));
         row.emplace_back(fmt::format("{:.3f} s", c.whole.worst_at));
@@ -84,8 +76,7 @@ nlohmann::json errors_json(const std::vector<Played>& played) {
                         {"unit", c.unit},
                         {"rms", c.whole.rms * c.scale},
                         {"noise", c.noise * c.scale},
-                        {"rms_over_noise", std::isfinite(c.whole.in_noise) ? nlohmann::json(c.whole.in_noise)
-                                                                           : nlohmann::json(nullptr)}});
+                        {"rms_over_noise", c.whole.in_noise}});
   return rows;
 }
 

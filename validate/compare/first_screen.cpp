@@ -15,18 +15,6 @@ namespace {
 constexpr double kShownBefore = 1,
                  kShownAfter = 5;  ///< initial view before and after the first switching [s]
 
-const ChannelComparison* find_channel(const Played* played, std::size_t event, const std::string& name) {
-  if (!played || event >= played->events.size()) return nullptr;
-  const auto& channels = played->events[event].channels;
-  const auto c = std::ranges::find(channels, name, &ChannelComparison::name);
-  return c == channels.end() ? nullptr : &*c;
-}
-
-std::vector<double> scaled(std::vector<double> values, double scale) {
-  for (auto& v : values) v *= scale;
-  return values;
-}
-
 /// Returns "86 → 1.0 ×", or "86 ×" for one model.
 std::string fall_text(const ChannelComparison& before, const ChannelComparison* after) {
   std::string text = report::times_noise(before.whole.in_noise);
@@ -216,12 +204,16 @@ std::pair<std::size_t, std::vector<std::string>> worst_event(const Played& playe
     if (c.name == "P" || c.name == "Q") worst.second.push_back(c.name);
   for (std::size_t k = 0; worst.second.empty() && k < std::min<std::size_t>(2, channels.size()); ++k)
     worst.second.push_back(channels[k].name);
-  if (worst.second.empty() && !channels.empty()) worst.second.push_back(channels.front().name);
   return worst;
 }
 
 std::string chart_id(std::size_t event, const std::string& channel) {
   return fmt::format("event-{}-{}", event + 1, channel);
+}
+
+std::vector<double> scaled(std::vector<double> values, double scale, double shift) {
+  for (double& v : values) v = v * scale + shift;
+  return values;
 }
 
 report::Curves event_chart(const EventComparison& e, const std::string& title, const std::string& unit) {

@@ -67,6 +67,8 @@ report::Curves channel_curves(const std::vector<std::pair<const Played*, report:
 std::string chart_id(std::size_t event, const std::string& channel);
 /// Returns an empty chart of an event, which shows 1 s before to 5 s after the first switching.
 report::Curves event_chart(const EventComparison& e, const std::string& title, const std::string& unit);
+/// Returns scale * values + shift, for charts in the unit of a channel.
+std::vector<double> scaled(std::vector<double> values, double scale, double shift = 0);
 
 /// Returns the command line of another command with the same inputs: "swingbank add SEXS --model ...".
 std::string next_command(const report::Provenance& rows, const std::string& command);

@@ -119,10 +119,7 @@ std::vector<report::Cell> cells_of(const JudgedErrors& of, const std::array<cons
   return cells;
 }
 
-nlohmann::json number(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
-nlohmann::json errors_json(const Errors& e) {
-  return {{"mxe", number(e.mxe)}, {"me", number(e.me)}, {"mae", number(e.mae)}};
-}
+nlohmann::json errors_json(const Errors& e) { return {{"mxe", e.mxe}, {"me", e.me}, {"mae", e.mae}}; }
 
 }  // namespace
 
@@ -245,9 +242,9 @@ nlohmann::json fitness_json(const Fitness& f) {
     j["movement"].push_back({{"record", m.event},
                              {"channel", m.channel},
                              {"unit", m.unit},
-                             {"rms", number(m.measured)},
-                             {"error_percent", number(m.error)},
-                             {"regression_percent", number(m.share)},
+                             {"rms", m.measured},
+                             {"error_percent", m.error},
+                             {"regression_percent", m.share},
                              {"limit_percent", m.limit}});
   for (const auto& row : f.rows) {
     nlohmann::json one = errors_json(row.errors);

@@ -69,16 +69,18 @@ Adequacy judge(std::vector<EventComparison>& events) {
       if (c.judged) maps.push_back(&c.map);
   set_bounds(maps, thresholds::adequacy.false_alarm);
   Adequacy a;
+  int failing = 0;  // bins that exceed their bound or are uninformative
   const NamedBin* worst = nullptr;
   const auto bins = all_bins(events);
   for (const auto& named : bins) {
     ++a.bins;
     a.exceeding += named.bin->exceeds() ? 1 : 0;
     a.vague += is_uninformative(named) ? 1 : 0;
+    failing += named.bin->exceeds() || is_uninformative(named) ? 1 : 0;
     if (!worst || named.bin->normalised / named.bin->bound > worst->bin->normalised / worst->bin->bound)
       worst = &named;
   }
-  a.ruling = thresholds::judged_by_bins(a.exceeding + a.vague, a.bins);
+  a.ruling = thresholds::judged_by_bins(failing, a.bins);
   a.adequate = a.ruling.adequate;
   if (a.vague > 0) {
     a.sentence = vague_sentence(bins, a.vague);

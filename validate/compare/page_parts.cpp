@@ -20,17 +20,6 @@ using report::Ink;
 
 std::string number_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
 
-/// Returns the channel of that name; null if it is not compared.
-const ChannelComparison* find_channel(const EventComparison& e, const std::string& name) {
-  const auto c = std::ranges::find(e.channels, name, &ChannelComparison::name);
-  return c == e.channels.end() ? nullptr : &*c;
-}
-
-std::vector<double> times(std::vector<double> values, double scale, double shift = 0) {
-  for (auto& v : values) v = v * scale + shift;
-  return values;
-}
-
 /// Models with a playback of the event, and their inks; the first model provides the measured curves.
 using Models = std::vector<std::pair<const Played*, Ink>>;
 Models models_of(const std::vector<Played>& played, std::size_t event) {
@@ -60,16 +49,16 @@ void input_panel(report::Document& page, const EventComparison& e, const std::st
 
 void voltage_panels(report::Document& page, const Models& models, std::size_t event) {
   const EventComparison& e = models.front().first->events[event];
-  if (find_channel(e, "V"))
+  if (find_channel(models.front().first, event, "V"))
     channel_panel(page, models, event, "V");
   else
     input_panel(page, e, "V", "pu", e.record.V);
   const double nominal = e.record.base.frequency;
   if (!e.record.f.empty())
-    input_panel(page, e, "f", "Hz", times(e.record.f, nominal, nominal));
+    input_panel(page, e, "f", "Hz", scaled(e.record.f, nominal, nominal));
   else if (e.record.angle != record::AngleSource::none && e.record.theta.size() == e.record.t.size())
     input_panel(page, e, "f from the angle", "Hz",
-                times(frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
+                scaled(frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
   else
     page.note("f: neither frequency nor angle was recorded.");
 }
@@ -78,10 +67,10 @@ void power_panels(report::Document& page, const Models& models, std::size_t even
   const EventComparison& e = models.front().first->events[event];
   for (const char* name : {"P", "Q"}) {
     const auto& recorded = name[0] == 'P' ? e.record.P : e.record.Q;
-    if (find_channel(e, name))
+    if (find_channel(models.front().first, event, name))
       channel_panel(page, models, event, name);
     else if (!recorded.empty())
-      input_panel(page, e, name, name[0] == 'P' ? "MW" : "Mvar", times(recorded, e.record.base.mva));
+      input_panel(page, e, name, name[0] == 'P' ? "MW" : "Mvar", scaled(recorded, e.record.base.mva));
   }
 }
 
@@ -89,12 +78,12 @@ void power_panels(report::Document& page, const Models& models, std::size_t even
 void residual_panels(report::Document& page, const Models& models, std::size_t event) {
   for (const char* name : {"P", "Q"}) {
     const EventComparison& e = models.front().first->events[event];
-    const ChannelComparison* first = find_channel(e, name);
+    const ChannelComparison* first = find_channel(models.front().first, event, name);
     if (!first) continue;
     report::Curves c = event_chart(e, fmt::format("{}, modelled − measured", name), first->unit);
     for (const auto& [model, ink] : models)
-      if (const ChannelComparison* m = find_channel(model->events[event], name))
-        c.series.push_back({model->name, ink, times(m->residual, m->scale)});
+      if (const ChannelComparison* m = find_channel(model, event, name))
+        c.series.push_back({model->name, ink, scaled(m->residual, m->scale)});
     page.add(std::move(c));
   }
 }

@@ -10,6 +10,13 @@
 
 namespace swingbank::validate::compare {
 
+const ChannelComparison* find_channel(const Played* played, std::size_t event, const std::string& name) {
+  if (!played || event >= played->events.size()) return nullptr;
+  const auto& channels = played->events[event].channels;
+  const auto c = std::ranges::find(channels, name, &ChannelComparison::name);
+  return c == channels.end() ? nullptr : &*c;
+}
+
 Played play_and_judge(std::string name, const plant::PlantModel& model,
                       const std::vector<Measurement>& records, CompareOptions options,
                       const thresholds::Acceptance& by) {

@@ -23,6 +23,9 @@ Played play_and_judge(std::string name, const plant::PlantModel& model,
                       const std::vector<Measurement>& records, CompareOptions options,
                       const thresholds::Acceptance& by);
 
+/// Returns the channel of that name of an event; nullptr if the model is null or the event lacks the channel.
+const ChannelComparison* find_channel(const Played* played, std::size_t event, const std::string& name);
+
 /// Returns the events of the first model whose playbacks succeeded; empty if there is no such model.
 const std::vector<EventComparison>& followed_events(const std::vector<Played>& played);
 /// Returns the records without the measured states speed, Efd and Ifd (--power-only).

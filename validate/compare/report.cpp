@@ -58,7 +58,7 @@ nlohmann::json to_json(const WindowError& w) {
                       {"mean_pu", w.mean},
                       {"worst_pu", w.worst},
                       {"worst_at_s", w.worst_at}};
-  j["rms_over_noise"] = std::isfinite(w.in_noise) ? nlohmann::json(w.in_noise) : nlohmann::json(nullptr);
+  j["rms_over_noise"] = w.in_noise;
   return j;
 }
 
@@ -102,11 +102,11 @@ CommandPage page_of(const plant::PlantModel& model, const std::vector<EventCompa
   CommandPage page;
   page.title = "Measured against modelled: " + model.name;
   page.subtitle = fmt::format(
-      "{} of {:g} MVA; the recorded {} into the model, and its response is compared with the recording.",
+      "{} of {:g} MVA; the recorded {} played into the model, and its response is compared with the recording.",
       plant::subject(model), model.plant.mva,
-      model.whole                         ? "signals around it are played"
-      : events.front().playback.P.empty() ? "P and Q are played"
-                                          : "terminal voltage is played");
+      model.whole                         ? "input signals of the component are"
+      : events.front().playback.P.empty() ? "P and Q are"
+                                          : "terminal voltage is");
   page.complete = adequacy.adequate;
   page.sentence = adequacy.sentence;
   page.played = {{"model", events, fitness}};
@@ -119,8 +119,6 @@ CommandPage page_of(const plant::PlantModel& model, const std::vector<EventCompa
 }
 
 }  // namespace
-
-report::Table error_map(const std::vector<EventComparison>& events) { return map_table(maps_of(events)); }
 
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                             const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,

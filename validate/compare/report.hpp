@@ -10,10 +10,6 @@
 
 namespace swingbank::validate::compare {
 
-/// Table of the normalised RMS per event, channel, window and band, and of the RMS per window in the
-/// channel's unit.
-report::Table error_map(const std::vector<EventComparison>& events);
-
 /// Terminal text: verdicts, usability, next step, errors, titles and notes; with `verbose` also every table.
 std::string terminal_report(const plant::PlantModel& model, const std::vector<EventComparison>& events,
                             const Adequacy& adequacy, const Fitness& fitness, const HandedIn& handed,

@@ -301,6 +301,15 @@ TEST(CompareTest, GivesNoVerdictOnUnstableModel) {
   EXPECT_THAT(a.sentence, HasSubstr("Undecided"));
   EXPECT_THAT(a.sentence, HasSubstr("by more than 10 times the nominal value"));
 }
+TEST(CompareTest, CountsABinOnce_WhenItExceedsItsBoundAndIsUninformative) {
+  std::vector<EventComparison> events(1);
+  events[0].channels.emplace_back().map.whole = {.values = 10, .rms = 1000, .normalised = 100};
+  const Adequacy a = judge(events);
+  EXPECT_EQ(a.exceeding, 1);
+  EXPECT_EQ(a.vague, 1);
+  EXPECT_EQ(a.ruling.value, 1);
+  EXPECT_EQ(a.bins, 1);
+}
 TEST(CompareTest, ComparesRecordedChannels) {
   const EventComparison e = example_event({2.0, 2.1});
   std::vector<std::string> channels;

@@ -11,6 +11,9 @@
 namespace swingbank::validate::compare {
 namespace {
 
+/// White noise of known standard deviation `sigma` [pu].
+ChannelNoise white_noise(double sigma) { return {.sigma = sigma, .covariance = {sigma * sigma}}; }
+
 constexpr double kRate = 60;
 /// 20 s at 60/s; the event is from 2 to 2.1 s.
 std::vector<double> times() {

@@ -207,7 +207,7 @@ TEST(CompareReportTest, PageOfAFitStatesWhyPlaybackExceedsNoise) {
 TEST(CompareReportTest, MapCellsShowPercentOfMvaAndNoise) {
   std::vector<EventComparison> events = {example_event()};
   judge(events);
-  const report::Table map = error_map(events);
+  const report::Table map = map_table(maps_of(events));
   const ChannelComparison& q = events[0].channels[1];
   const TimeFrequencyBin& bin = q.map.rows[2].all;
   const std::string expected =

@@ -28,9 +28,7 @@ void play_fitted(const plant::PlantModel& model, const noise::WhitenedEvents& ev
   const event::FitEvent& event = events.front();
   fit::Fit f = fit::fit(model.under_test(), events, {}, {.steady_start = how == Fitted::steady_start});
   if (how == Fitted::in_slow_noise && f.failed.empty()) f = in_slow_noise(std::move(f), model, events);
-  if (!f.failed.empty())
-    throw InputError({"playback of the record fails", e.record.name, f.failed,
-                      "check the model's parameters and the record's base and units"});
+  if (!f.failed.empty()) throw event::playback_failure(e.record.name, f.failed);
   const fit::EventState& state = f.events.front().state;
   playin::Response r = event::play(model.under_test(), event, state);
   e.playback = playin::Playback{};
