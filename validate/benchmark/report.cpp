@@ -30,8 +30,9 @@ NearestLimit nearest_limit(const TestResult& r) {
   }
   for (const compare::Movement& m : r.fitness.movements)
     if (const double ratio = m.error / m.limit; !(ratio <= most.ratio))
-      most = {ratio, fmt::format("RMS of {}, post: {:.3g} % of its movement, limit {:g} %", m.channel,
-                                 m.error, m.limit)};
+      most = {ratio,
+              fmt::format("RMS error of {}, post: {:.3g} % of the reference's RMS deviation, limit {:g} %",
+                          m.channel, m.error, m.limit)};
   return most;
 }
 
@@ -76,10 +77,8 @@ std::string verdict_sentence(const std::vector<TestResult>& results, const Repor
   return text;
 }
 
-nlohmann::json finite(double v) { return std::isfinite(v) ? nlohmann::json(v) : nlohmann::json(nullptr); }
-
 nlohmann::json errors_of(const thresholds::Errors& e, double scale) {
-  return {{"mxe", finite(e.mxe * scale)}, {"me", finite(e.me * scale)}, {"mae", finite(e.mae * scale)}};
+  return {{"mxe", e.mxe * scale}, {"me", e.me * scale}, {"mae", e.mae * scale}};
 }
 
 nlohmann::json test_json(const TestResult& r) {
@@ -112,16 +111,11 @@ nlohmann::json test_json(const TestResult& r) {
   for (const compare::Movement& m : r.fitness.movements)
     j["movement"].push_back({{"channel", m.channel},
                              {"unit", m.unit},
-                             {"reference_rms", finite(m.measured)},
-                             {"error_percent", finite(m.error)},
+                             {"reference_rms", m.measured},
+                             {"error_percent", m.error},
                              {"limit_percent", m.limit},
                              {"passes", !m.exceeds()}});
   return j;
-}
-
-std::vector<double> in_units(std::vector<double> values, double scale, double shift = 0) {
-  for (double& v : values) v = v * scale + shift;
-  return values;
 }
 
 constexpr std::size_t kChartPoints = 5000;  ///< largest number of points per curve, several per screen pixel
@@ -144,8 +138,8 @@ report::Curves thinned(report::Curves c) {
 report::Curves channel_chart(const TestResult& r, const compare::ChannelComparison& channel,
                              const std::string& reference) {
   report::Curves c = compare::event_chart(r.event, channel.name, channel.unit);
-  c.series.push_back({reference, report::Ink::measured, in_units(channel.measured, channel.scale)});
-  c.series.push_back({"model", report::Ink::fitted, in_units(channel.modelled, channel.scale)});
+  c.series.push_back({reference, report::Ink::measured, compare::scaled(channel.measured, channel.scale)});
+  c.series.push_back({"model", report::Ink::fitted, compare::scaled(channel.modelled, channel.scale)});
   return thinned(std::move(c));
 }
 
@@ -169,7 +163,8 @@ void charts(report::Document& page, const TestResult& r, const std::string& refe
     page.add(thinned(std::move(c)));
   };
   input("V", "pu", e.record.V);
-  input("f", "Hz", in_units(compare::frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
+  input("f", "Hz",
+        compare::scaled(compare::frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
   for (const auto& channel : e.channels) page.add(channel_chart(r, channel, reference));
   page.add(report::End{});
 }
@@ -177,10 +172,9 @@ void charts(report::Document& page, const TestResult& r, const std::string& refe
 }  // namespace
 
 report::Table summary_table(const std::vector<TestResult>& results) {
-  report::Table table{
-      "Verdict of each test, and the error that is nearest to its limit or furthest above it.",
-      {"test", "kind", "event", "verdict", "error nearest to its limit"},
-      {}};
+  report::Table table{"Verdict of each test, and the error with the largest ratio to its limit.",
+                      {"test", "kind", "event", "verdict", "largest error / limit"},
+                      {}};
   for (const TestResult& r : results)
     table.rows.push_back({r.test.name, std::string(kind_name(r.test.kind)), times_text(r.test),
                           report::Cell(r.passes() ? "pass" : "fail", r.passes() ? 0.0 : 1.0),
@@ -316,13 +310,13 @@ std::string html_report(const std::vector<TestResult>& results, const ReportCont
   page.add(report::Paragraph{
       "Voltage and angle of the reference are played into the model. Drag across a chart to "
       "zoom (all charts of a test follow); double-click to see all of it. The grey band is the "
-      "event. Curves of long records have every n-th sample, at most 5000; errors are those of all samples.",
+      "event. Curves of long records show at most 5000 samples; errors use all samples.",
       report::Paragraph::Kind::hint});
   for (const TestResult& r : results) {
     page.add(report::Begin{report::Begin::Layout::fold,
                            fmt::format("{} {}: {}, {}", r.passes() ? "✓" : "✕", r.test.name,
                                        kind_name(r.test.kind), times_text(r.test))});
-    if (!r.failure.empty()) page.note("The model does not follow this test: " + r.failure);
+    if (!r.failure.empty()) page.note("The simulation of this test failed: " + r.failure);
     charts(page, r, c.reference);
     page.add(report::End{});
   }

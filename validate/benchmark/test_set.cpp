@@ -1,7 +1,6 @@
 #include "validate/benchmark/test_set.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 
 #include "base/config.hpp"
 #include "base/describe.hpp"
+#include "validate/plant/unknown_keys.hpp"
 
 namespace swingbank::validate::benchmark {
 namespace {
@@ -56,7 +56,7 @@ void check_size(Config& c, const std::string& at, const Test& t) {
               kind.sign < 0 ? "the voltage falls in a dip" : "the voltage rises in a swell",
               fmt::format("give the change with its sign, such as {:g}", -*t.size));
   if (!t.size && is_reference_step(t.kind))
-    c.problem(at + "size", "no size", "the step of a reference is not in the record",
+    c.problem(at + "size", "no size", "a record does not contain the size of a reference step",
               fmt::format("add size = … [{}]", kind.unit));
 }
 
@@ -67,13 +67,15 @@ void check_times(Config& c, const std::string& at, const Test& t) {
   if (!t.end && record_of(t.kind).has_end)
     c.problem(at + "end", "no end", fmt::format("a {} has an end", kind_name(t.kind)), "add end = … [s]");
   if (t.during && !t.end)
-    c.problem(at + "during", "window without an end of the event", "it lies between event and end",
+    c.problem(at + "during", "window 'during' without 'end'", "the window lies between event and end",
               "add end = … [s], or leave out the window");
   const auto outside = [&](const char* key, const std::optional<Interval>& w, double from, double to) {
     if (w && (w->first < from || w->second > to || !(w->second > w->first)))
-      c.problem(at + key, fmt::format("{} = [{:g}, {:g}] s", key, w->first, w->second),
-                fmt::format("the event begins at {:g} s and ends at {:g} s", t.event, t.last()),
-                "give a window on its own side of the event, [from, to] in s of the record");
+      c.problem(
+          at + key, fmt::format("{} = [{:g}, {:g}] s", key, w->first, w->second),
+          fmt::format("the event begins at {:g} s and ends at {:g} s", t.event, t.last()),
+          "end `pre` before the event, put `during` inside it, begin `post` after it: [from, to] in s of "
+          "the record");
   };
   outside("pre", t.pre, -kLatest, t.event);
   outside("during", t.during, t.event, t.last());
@@ -108,10 +110,7 @@ Test read_test(Config& c, int index) {
       at + "record", "",
       {.meaning =
            "file of --records, or path relative to the folder of this file (default: the test's name)"});
-  for (const auto& key : c.keys(fmt::format("test[{}]", index)))
-    if (!std::ranges::count(kKeys, key))
-      c.problem(at + key, "unknown key " + key, "a test has no such key",
-                fmt::format("remove it or use one of: {}", fmt::join(kKeys, ", ")));
+  plant::refuse_unknown_keys(c, fmt::format("test[{}]", index), "[[test]]", {kKeys.begin(), kKeys.end()});
   check_times(c, at, t);
   check_size(c, at, t);
   return t;
@@ -133,16 +132,17 @@ TestSet read_set(Config& c) {
   }
   if (c.has("test")) c.ignore("test");  // its keys are checked in read_test
   if (c.has("test") && !c.is_array("test"))
-    c.problem("test", "one [test]", "a set may have several", "write [[test]]");
+    c.problem("test", "[test] is a single table", "tests are a list of tables", "write [[test]]");
   std::set<std::string> names;
   for (int k = 0; c.is_array("test") && c.has(fmt::format("test[{}]", k)); ++k) {
     set.tests.push_back(read_test(c, k));
     if (!names.insert(set.tests.back().name).second)
-      c.problem(fmt::format("test[{}].name", k), "test '" + set.tests.back().name + "' again",
-                "another test has the name", "give each test its own name");
+      c.problem(fmt::format("test[{}].name", k), "two tests named '" + set.tests.back().name + "'",
+                "names of tests must be unique", "give each test its own name");
   }
   if (set.tests.empty())
-    c.problem("test", "no test", "a benchmark has one [[test]] at least", "see configs/benchmark/README.md");
+    c.problem("test", "no test", "a benchmark needs at least one [[test]]",
+              "see configs/benchmark/README.md");
   c.raise();
   return set;
 }
@@ -206,11 +206,11 @@ void find_records(TestSet& set, const std::vector<std::string>& given, bool gene
                       t.name));
     } else if (!set.initial) {
       problems.add(fmt::format("no operating point for test '{}'", t.name), t.where,
-                   "it has no record, so that its input is generated",
+                   "the test has no record, so its input is generated",
                    "add [operating_point] with P, Q, V and rate, or a record");
     } else if (!t.size || !t.post) {
       problems.add(fmt::format("no {} of test '{}'", t.size ? "window post" : "size", t.name), t.where,
-                   "it has no record, so that its input is generated",
+                   "the test has no record, so its input is generated",
                    t.size ? "add post = [from, to] in s: the input ends with it"
                           : fmt::format("add size = … [{}]", size_unit(t.kind)));
     } else if (const double samples = t.post->second * set.initial->rate; !(samples <= kMostGenerated)) {
@@ -224,7 +224,7 @@ void find_records(TestSet& set, const std::vector<std::string>& given, bool gene
   }
   for (const std::string& file : given)
     if (!used.contains(file))
-      problems.add("record " + file, "--records", "no test has its name",
+      problems.add("record " + file, "--records", "no test in the file has the name of this record",
                    "name it after a test, or add a test with record = \"" +
                        fs::path(file).filename().string() + "\" to " + set.file.string());
 }

@@ -85,7 +85,7 @@ color = "red"
 TEST(BenchmarkTestSetTest, RefusesSetWithoutTestsAndEqualNames) {
   EXPECT_THAT(complaints("name = \"x\"\n"), ElementsAre(HasSubstr("no test")));
   const std::string twice = std::string(kDip) + std::string(kDip).substr(std::string(kDip).find("[[test]]"));
-  EXPECT_THAT(complaints(twice), ElementsAre(HasSubstr("test 'dip' again")));
+  EXPECT_THAT(complaints(twice), ElementsAre(HasSubstr("two tests named 'dip'")));
 }
 
 TEST(BenchmarkTestSetTest, FindsRecordsByNameAndByKey) {
