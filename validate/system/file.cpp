@@ -159,8 +159,10 @@ void add_instruments(Config& c, const std::string& key, const Texts& texts, cons
   for (const sim::plant::Block& block : t.instruments)
     attempt(c, key, [&] {
       if (!is_repeatable(block, s.base.frequency))
-        throw InputError({"an instrument that draws random numbers", std::string(block.effect->name),
-                          "the noise of a record is estimated from it", "leave it out"});
+        throw InputError(
+            {"an instrument that draws random numbers", std::string(block.effect->name),
+             "a simulated response requires a deterministic instrument; noise is estimated from the record",
+             "leave it out"});
     });
 }
 
@@ -170,8 +172,8 @@ void read_terminal(Config& c, const std::string& name, SystemCase& s) {
   t.name = name;
   const bool is_bus = c.has(at + "bus");
   if (is_bus == c.has(at + "plant"))
-    c.problem("terminal." + name, "terminal " + name, "it is at a plant or at a bus",
-              "give plant or bus, one of them");
+    c.problem("terminal." + name, "terminal " + name, "a terminal is either a plant or a bus",
+              "give one of the keys plant and bus");
   const auto number =
       c.optional<std::int64_t>(at + "bus", 0, {1, 999999, "", "bus number, in place of a plant"});
   const auto plant = c.optional<std::string>(at + "plant", "", {.meaning = "name of the plant: 2, 30/1"});
@@ -224,22 +226,24 @@ void check_clocks(Config& c, const SystemCase& s) {
     if (t.record.t.back() < end - 60 || t.record.t.front() > s.terminals.front().record.t.front() + 60)
       c.problem("terminal." + t.name + ".record",
                 fmt::format("times from {:g} to {:g} s", t.record.t.front(), t.record.t.back()),
-                "they do not fit those of the other terminals", "give all records on one clock");
+                "they differ from those of the other terminals by more than 60 s",
+                "give all records on one clock");
 }
 
 SystemCase read_system(Config& c, SystemCase s) {
   s.name = c.require<std::string>("system.name", {.meaning = "name of the system, printed in reports"});
   s.base.mva =
       c.require<double>("record.base_mva", {1e-9, 1e9, "MVA", "base of P_pu and Q_pu of the records"});
-  s.base.kv = c.optional<double>("record.base_kv", 0.0,
-                                 {1e-9, 1e9, "kV", "base of the voltage, needed if a record gives it in kV"});
+  s.base.kv = c.optional<double>(
+      "record.base_kv", 0.0,
+      {1e-9, 1e9, "kV", "base of the voltage; needed if a record contains the voltage in kV"});
   s.texts = read_texts(c);
   s.switching_times_from_records =
       c.choice("event.switching_times", {"given", "found"}, "given",
                {.meaning = "switching times: as given, or estimated from the records"}) == "found";
   s.steady_state =
       c.choice("compare.steady_state", {"judge", "shift"}, "judge",
-               {.meaning = "difference before the event: it counts, or is subtracted"}) == "shift"
+               {.meaning = "treatment of differences before the event: judge or subtract"}) == "shift"
           ? SteadyState::shift
           : SteadyState::judge;
   s.tolerance = c.optional<double>("compare.tolerance", s.tolerance,

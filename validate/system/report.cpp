@@ -20,13 +20,11 @@ namespace {
 
 using nlohmann::json;
 
-/// Renames events to terminals in a table and its caption.
-report::Table of_terminals(report::Table table) {
-  for (auto& h : table.header)
-    if (h == "event") h = "terminal";
-  if (const auto at = table.caption.find("worst of all events"); at != std::string::npos)
-    table.caption.replace(at, 19, "worst of all terminals");
-  return table;
+/// Error map with one row per channel and window; of several terminals, each bin shows the worst.
+report::Table terminals_map(const std::vector<compare::EventComparison>& terminals) {
+  const auto maps = compare::maps_of(terminals);
+  return terminals.size() > 1 ? compare::worst_map_table(maps, "terminal")
+                              : compare::map_table(maps, "terminal");
 }
 
 /// Table of RMS and largest error of every channel over the whole record.
@@ -52,7 +50,7 @@ std::string place_of(const SystemCase& s, const SystemTerminal& t) {
 std::string switching_times_text(const SystemComparison& c) {
   std::string text;
   for (const double t : c.switching_times) text += (text.empty() ? "" : ", ") + fmt::format("{:.4f} s", t);
-  return text + (c.uncertainty > 0 ? " (found)" : " (given)");
+  return text + (c.uncertainty > 0 ? " (estimated)" : " (given)");
 }
 std::vector<std::string> event_lines(const sim::grid::EventTexts& t) {
   std::vector<std::string> lines;
@@ -119,11 +117,6 @@ json terminal_json(const SystemCase& s, const SystemComparison& c, std::size_t i
   return j;
 }
 
-std::vector<double> in_units(const compare::ChannelComparison& channel, std::vector<double> values) {
-  for (auto& x : values) x *= channel.scale;
-  return values;
-}
-
 /// Returns the chart of a channel of a terminal; all terminals zoom together.
 report::Curves channel_chart(const SystemComparison& c, std::size_t terminal,
                              const compare::ChannelComparison& channel) {
@@ -132,8 +125,8 @@ report::Curves channel_chart(const SystemComparison& c, std::size_t terminal,
   curves.fault = {c.switching_times.front(), c.switching_times.back()};
   curves.view = {c.switching_times.front() - 1, c.switching_times.front() + 5};
   curves.id = compare::chart_id(terminal, channel.name);
-  curves.series = {{"measured", report::Ink::measured, in_units(channel, channel.measured)},
-                   {"modelled", report::Ink::fitted, in_units(channel, channel.modelled)}};
+  curves.series = {{"measured", report::Ink::measured, compare::scaled(channel.measured, channel.scale)},
+                   {"modelled", report::Ink::fitted, compare::scaled(channel.modelled, channel.scale)}};
   return curves;
 }
 
@@ -166,13 +159,12 @@ void add_terminal(report::Document& page, const SystemCase& s, const SystemCompa
     report::Curves curves = channel_chart(c, i, channel);
     page.add(curves);
     curves.title = channel.name + " residual (modelled − measured)";
-    curves.series = {{"residual", report::Ink::fitted, in_units(channel, channel.residual)}};
+    curves.series = {{"residual", report::Ink::fitted, compare::scaled(channel.residual, channel.scale)}};
     curves.id.clear();
     page.add(std::move(curves));
   }
   page.add(report::End{});
-  if (c.terminals.size() > 1)
-    compare::heat_maps(page, of_terminals(compare::map_table(compare::maps_of({e}))));
+  if (c.terminals.size() > 1) compare::heat_maps(page, terminals_map({e}));
   page.add(report::End{});
 }
 
@@ -194,18 +186,17 @@ report::Table ranking_table(const SystemCase& s, const SystemComparison& c) {
                           r.where, r.alone ? ratio(r.alone_worst) : report::Cell("–"),
                           r.alone                 ? r.alone_where
                           : r.alone_where.empty() ? "–"
-                                                  : "not possible"});
+                                                  : "playback failed"});
   }
   return table;
 }
 
 std::string system_text(const SystemCase& s, const SystemComparison& c) {
-  std::string out = fmt::format("{}: measured against the simulation of the whole grid\n\n", s.name);
+  std::string out = fmt::format("{}: records compared with the simulation of the whole grid\n\n", s.name);
   out += report::padded(summary(c.terminals));
   out += "\nNormalised RMS per window and band" +
          std::string(c.terminals.size() > 1 ? ", worst of all terminals" : "") + ":\n";
-  const auto maps = compare::maps_of(c.terminals);
-  out += report::padded(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps));
+  out += report::padded(terminals_map(c.terminals));
   out += "* = above the joint noise limit\n\nBefore the event, mean of modelled − measured:\n";
   out += report::padded(initial_table(s, c));
   out += "\nTerminals, sorted by error (largest ratio of a bin to its bound):\n";
@@ -277,10 +268,8 @@ std::string system_html(const SystemCase& s, const SystemComparison& c, const re
   }
   for (const auto& note : c.notes) page.note(note);
   page.add(ranking_table(s, c));
-  const auto maps = compare::maps_of(c.terminals);
   page.section("Error map");
-  compare::heat_maps(
-      page, of_terminals(c.terminals.size() > 1 ? compare::worst_map_table(maps) : compare::map_table(maps)));
+  compare::heat_maps(page, terminals_map(c.terminals));
   page.add(summary(c.terminals));
   page.add(initial_table(s, c));
   std::string event;

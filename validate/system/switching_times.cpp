@@ -79,11 +79,7 @@ class SwitchingTimeFit {
   double reduced_chi2(std::size_t k, double t) {
     auto switching_times = best_;
     switching_times[k] = t;
-    const sim::network::Event event = moved(s_.event, [&](double at) {
-      return switching_times[static_cast<std::size_t>(std::ranges::lower_bound(written_, at) -
-                                                      written_.begin())];
-    });
-    const SystemRun run = run_system(s_, event);
+    const SystemRun run = run_system(s_, moved(s_.event, written_, switching_times));
     double sum = 0;
     for (std::size_t i = 0; i < s_.terminals.size(); ++i) {
       const record::Record& r = s_.terminals[i].record;

@@ -152,7 +152,7 @@ class Comparer {
         std::abs(other.step() - r.step()) > 1e-6 * r.step())
       throw InputError({"angles with different sampling times",
                         "terminals " + e.record.name + " and " + s_.terminals[reference].name,
-                        "the angle between them cannot be taken sample by sample",
+                        "angles can be subtracted only at equal sampling times",
                         "export both at the same rate, or leave compare.reference out"});
     const auto measured = difference(r.theta, other.theta);
     auto modelled = difference(run_.responses[i].theta, run_.responses[reference].theta);
@@ -228,7 +228,7 @@ void play_alone(const SystemCase& s, SystemComparison& c, TerminalRank& rank) {
     std::tie(rank.alone_worst, rank.alone_where) = worst_bin(one.front());
   } catch (const InputError& error) {
     rank.alone_where = "playback failed: " + error.problems().front().sentence();
-    c.terminals[rank.terminal].notes.push_back("Record alone: " + rank.alone_where);
+    c.terminals[rank.terminal].notes.push_back("Playback of the plant alone: " + rank.alone_where);
   }
 }
 
@@ -275,10 +275,7 @@ SystemComparison compare_system(const SystemCase& s) {
   if (s.switching_times_from_records) {
     const auto written = c.switching_times;
     c.switching_times = estimate_switching_times(s, c.uncertainty);
-    event = moved(event, [&](double t) {
-      const auto at = std::ranges::lower_bound(written, t) - written.begin();
-      return c.switching_times[static_cast<std::size_t>(at)];
-    });
+    event = moved(event, written, c.switching_times);
   }
   for (const auto& t : s.terminals)
     if (c.switching_times.front() < t.record.t.front())

@@ -341,7 +341,7 @@ TEST_F(SystemCompare, ReportsBadInput) {
       {{"fault = [\"4:2.0:2.1\"]", ""}, "no event"},
       {{"plant = \"8\"", "plant = \"9\""}, "no plant 9"},
       {{"bus = 5", "bus = 77"}, "no bus 77"},
-      {{"bus = 5", "bus = 5\nplant = \"1\""}, "one of them"},
+      {{"bus = 5", "bus = 5\nplant = \"1\""}, "either a plant or a bus"},
       {{"reference = \"one\"", "reference = \"zero\""}, "no terminal zero"},
       {{"base_mva = 100.0", "base_mva = -1"}, "base_mva"},
       {{"plant8.csv", "nowhere.csv"}, "nowhere.csv"},

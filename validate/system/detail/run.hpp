@@ -1,5 +1,6 @@
 #pragma once
 // Simulation of the event in the full grid, with the response at every terminal of a system comparison.
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -44,6 +45,14 @@ sim::network::Event moved(sim::network::Event e, Move move) {
   }
   for (auto& s : e.setpoint_steps) s.time = move(s.time);
   return e;
+}
+/// Returns the event with each of its switching times `written`, in ascending order, replaced by that of
+/// `to`.
+inline sim::network::Event moved(const sim::network::Event& event, const std::vector<double>& written,
+                                 const std::vector<double>& to) {
+  return moved(event, [&](double t) {
+    return to[static_cast<std::size_t>(std::ranges::lower_bound(written, t) - written.begin())];
+  });
 }
 
 /// Estimates the event's switching times. Voltage steps determine each time within half a sampling interval.
