@@ -104,7 +104,7 @@ status=0
 grep -q '^# NOT ADEQUATE' "$work/poor/model-not-adequate.toml" || fail "the bent model does not say so"
 grep -q "^next: .*swingbank diagnose --model $model" "$work/text" || fail "it does not say what is next"
 "$swingbank" compare --model "$work/poor/model-not-adequate.toml" --records "$one" --out "$work/bent" >/dev/null 2>"$work/notes" || (($? == 3))
-grep -q 'is the result of a calibration that was not adequate' "$work/notes" || fail "a bent model is taken without a word"
+grep -q 'contains the result of an inadequate calibration' "$work/notes" || fail "a bent model is taken without a word"
 grep -q 'Structure not adequate' "$work/text" || fail "it does not say that something is missing: $(head -1 "$work/text")"
 
 out=$work/out

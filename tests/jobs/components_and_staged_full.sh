@@ -17,12 +17,12 @@ says() {
 
 example components.md || fail "components.md: $(cat "$work/said.errors")"
 says '^Statistically complete: no\. Not adequate' 1
-says '^Statistically complete: yes\. Structure adequate, parameters were poor.*KF 0\.05 -> 0\.03 pu' 1
+says '^Statistically complete: yes\. Structure adequate, parameter values were wrong.*KF 0\.05 -> 0\.03 pu' 1
 says '^Statistically complete: yes\. Adequate' 1
 
 example staged-tests.md || fail "staged-tests.md: $(cat "$work/said.errors")"
 says '^Statistically complete: no\. Not adequate' 1
-says '^Statistically complete: yes\. Structure adequate, parameters were poor' 1
+says '^Statistically complete: yes\. Structure adequate, parameter values were wrong' 1
 says '^Statistically complete: yes\. Adequate' 1
 
 cd "$work"

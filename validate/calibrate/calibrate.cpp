@@ -27,9 +27,7 @@ namespace {
 fit::Fit alone(const plant::PlantModel& model, const sim::plant::Plant& plant,
                const noise::WhitenedEvents& event) {
   fit::Fit f = fit::fit({plant, model.conventions}, event, {});
-  if (!f.failed.empty())
-    throw InputError({"playback of the record fails", event.front().record.name, f.failed,
-                      "check the model's parameters and the record's base and units"});
+  if (!f.failed.empty()) throw event::playback_failure(event.front().record.name, f.failed);
   return f;
 }
 
@@ -197,7 +195,6 @@ class Calibrating {
     const auto best = std::ranges::min_element(fits, fit::better);
     if (!best->failed.empty())
       throw InputError({"no start can be evaluated", model_.origin, best->failed, "correct the model"});
-    c_.starts = static_cast<int>(fits.size());
     const double near = std::max(thresholds::parameters.agrees_least.value,
                                  thresholds::parameters.agrees * fit::penalised(*best));
     double values = 0;
@@ -457,8 +454,8 @@ class Calibrating {
     std::string most;
     for (std::size_t k = 0; k < moves.size() && k < 3; ++k)
       if (moves[k].first > thresholds::parameters.moved) most += (most.empty() ? "" : ", ") + moves[k].second;
-    return "Structure adequate, parameters were poor: after calibration " + residual_text(c_.events) + " (" +
-           left + ")." + (most.empty() ? "" : " Largest changes, in standard errors: " + most + ".");
+    return "Structure adequate, parameter values were wrong: after calibration " + residual_text(c_.events) +
+           " (" + left + ")." + (most.empty() ? "" : " Largest changes, in standard errors: " + most + ".");
   }
   std::string poor_structure(const std::string& left) const {
     const EventScore* worst = &c_.events.front();

@@ -70,7 +70,8 @@ struct UnidentifiedCombination {
   };
   std::vector<Member> members;  ///< the largest first
   double decided = 0;           ///< share of the posterior precision that comes from the records
-  bool alone = false;           ///< the combination is a single parameter
+  /// Whether the combination is a single parameter.
+  [[nodiscard]] bool alone() const { return members.size() == 1; }
 };
 
 /// Simulated event that was not recorded, with the parameter errors that it would give.
@@ -115,9 +116,9 @@ struct Calibration {
   std::vector<Candidate> candidates;                  ///< simulated further events
   std::vector<EventScore> events;                     ///< scores of all events, in the order given
   double before = 0, after = 0, limit = 0;            ///< reduced chi-square of the fitted events; its limit
-  int starts = 0, agreeing = 0;         ///< number of refined starts; number that reached the best optimum
-  std::vector<StartScore> started;      ///< each refined start, in the order tried
-  bool converged = false;               ///< the search ended at a minimum
+  std::vector<StartScore> started;                    ///< each refined start, in the order tried
+  int agreeing = 0;                                   ///< number of starts that reached the best optimum
+  bool converged = false;                             ///< the search ended at a minimum
   double voltage_noise = 0;             ///< share of the pre-event variation of V that is instrument noise
   fit::Fit fit;                         ///< fit of the events that are not held out
   std::vector<fit::EventState> states;  ///< state of every event at the fitted parameters

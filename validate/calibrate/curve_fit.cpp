@@ -52,10 +52,10 @@ class EventResidual : public ceres::CostFunction {
                          .scale = setting_.start[i]});
     try {
       const playin::Response r = event::play({plant, setting_.model.conventions}, event_, {}, along);
-      const auto width = static_cast<int>(setting_.free.size());
-      write(r.value, true, residuals, 1, 0);
+      Eigen::Map<Eigen::VectorXd>(residuals, event_.values()) = event_.collected(r.value, true);
       for (std::size_t i = 0; i < along.size(); ++i)
-        write(r.sensitivities[i].value, false, jacobian, width, static_cast<int>(i));
+        Eigen::Map<RowMatrix>(jacobian, event_.values(), static_cast<Eigen::Index>(along.size()))
+            .col(static_cast<Eigen::Index>(i)) = event_.collected(r.sensitivities[i].value, false);
     } catch (const InputError&) {
       return false;  // Ceres shortens the step
     } catch (const Interrupted&) {
@@ -65,18 +65,6 @@ class EventResidual : public ceres::CostFunction {
   }
 
  private:
-  void write(const std::vector<double>* values, bool less_measured, double* to, int stride,
-             int column) const {
-    Eigen::Index row = 0;
-    for (std::size_t k = 0; k < event_.record.t.size(); ++k) {
-      if (!event_.compared(k)) continue;
-      for (const playin::Output o : event_.channels) {
-        const double measured = less_measured ? event_.measured(o)[k] : 0.0;
-        to[row++ * stride + column] = values[static_cast<int>(o)][k] - measured;
-      }
-    }
-  }
-
   const Setting& setting_;
   const event::FitEvent& event_;
 };
@@ -144,9 +132,7 @@ class CurveFitting {
     try {
       return as_played(setting_, plant, events_, e);
     } catch (const InputError& error) {
-      throw InputError({"playback of the record fails", events_[e].record.name,
-                        error.problems().front().sentence(),
-                        "check the model's parameters and the record's base and units"});
+      throw event::playback_failure(events_[e].record.name, error.problems().front().sentence());
     }
   }
   void search() {

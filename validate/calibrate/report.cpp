@@ -85,7 +85,7 @@ std::string adequacy_name(Adequacy adequacy) {
     case Adequacy::adequate:
       return "adequate";
     case Adequacy::parameters_poor:
-      return "parameters were poor";
+      return "parameter values were wrong";
     case Adequacy::structure_poor:
       break;
   }
@@ -98,7 +98,7 @@ std::string describe(const Calibration& c, const UnidentifiedCombination& combin
     const auto& p = c.parameters[static_cast<std::size_t>(m.parameter)].fit;
     members += fmt::format("{}{} {:+.2g} {}", members.empty() ? "" : ", ", p.full_name(), m.change, p.unit);
   }
-  if (combination.alone)
+  if (combination.alone())
     return c.parameters[static_cast<std::size_t>(combination.members.front().parameter)].fit.full_name() +
            " alone has no significant influence on these records (" + percent(combination.decided) +
            " determined)";
@@ -122,7 +122,7 @@ report::Table parameter_table(const Calibration& c) {
 }
 
 report::Table event_table(const std::vector<EventScore>& events) {
-  report::Table t{"Events", {"event", "use", "chi2/value before", "after", "limit"}, {}};
+  report::Table t{"Events", {"event", "use", "red. chi2 before", "after", "limit"}, {}};
   for (const auto& e : events) {
     t.rows.push_back({e.record, use_name(e), fmt::format("{:.3g}", e.before),
                       fmt::format("{:.3g}{}", e.after, e.adequate() ? "" : " !"),
@@ -134,7 +134,7 @@ report::Table event_table(const std::vector<EventScore>& events) {
 std::string terminal_report(const Calibration& c) {
   std::string text = c.sentence + "\n\n" + report::padded(event_table(c.events), 1) + "\n" +
                      report::padded(parameter_table(c), 1);
-  text += fmt::format("\n{} of {} starts reached this optimum{}.\n", c.agreeing, c.starts,
+  text += fmt::format("\n{} of {} starts reached this optimum{}.\n", c.agreeing, c.started.size(),
                       c.converged ? "" : "; the search reached its iteration limit");
   if (c.started.size() > 1) text += starts_text(c);
   const auto coloured = std::ranges::max_element(c.events, {}, &EventScore::colour);
@@ -174,7 +174,7 @@ json calibration_json(const Calibration& c) {
             {"reduced_chi2_before", c.before},
             {"reduced_chi2_after", c.after},
             {"reduced_chi2_limit", c.limit},
-            {"starts", c.starts},
+            {"starts", c.started.size()},
             {"starts_agreeing", c.agreeing},
             {"started", json::array()},
             {"converged", c.converged},

@@ -20,9 +20,7 @@ ResponseBands response_bands(const plant::PlantModel& fitted, const std::vector<
   const auto each = [&](auto work) { in_parallel(events.size(), work, [](int) {}); };
   each([&](std::size_t e) {
     const fit::Fit alone = fit::fit(tested, events.alone(e), {});
-    if (!alone.failed.empty())
-      throw InputError({"playback of the record fails", events[e].record.name, alone.failed,
-                        "check the model's parameters and the record's base and units"});
+    if (!alone.failed.empty()) throw event::playback_failure(events[e].record.name, alone.failed);
     chi2[e] = alone.chi2;
     linear[e] = fit::linearise(tested, events.whitened(e), alone.events.front().state, free);
   });

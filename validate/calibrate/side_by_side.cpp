@@ -31,17 +31,17 @@ Truth truth_of(const sim::plant::Plant& plant) {
 
 void require_base(double mva, const plant::PlantModel& model, const std::string& where) {
   if (std::abs(mva - model.plant.mva) > 1e-6 * model.plant.mva)
-    throw InputError({fmt::format("a truth on {:g} MVA", mva), where,
+    throw InputError({fmt::format("true values on {:g} MVA", mva), where,
                       fmt::format("the model's parameters are on {:g} MVA", model.plant.mva),
-                      "give the truth of the same machine"});
+                      "give the true values of the same machine"});
 }
 
 /// Reads a truth file of `blind-test`.
 Truth blind_truth(const std::filesystem::path& file, const plant::PlantModel& model) {
   note_input(file);
   const json j = json::parse(read_text(file), nullptr, false);
-  const InputError wrong({"no truth", file.string(), "it is not a truth file of blind-test",
-                          "give a plant file (.toml) or a truth of blind-test (.json)"});
+  const InputError wrong({"no file of true values", file.string(), "it is not a truth file of blind-test",
+                          "give a plant file (.toml) or a truth file of blind-test (.json)"});
   if (!j.is_object() || !j.contains("true_plant")) throw wrong;
   Truth truth;
   try {

@@ -1,6 +1,7 @@
 #include "validate/calibrate/wrong_parameters.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/json.hpp"
 #include "validate/noise/pre_event.hpp"
@@ -40,19 +41,18 @@ std::string wrong_sentence(const fit::SparseSelection& found, double adequate) {
     return fmt::format("No parameter has to change: none explains more than noise ({}).", left);
   std::string names;
   for (const auto& w : found.wrong) {
-    std::string tied;
-    for (const auto& t : w.tied) tied += (tied.empty() ? "" : ", ") + t;
+    const std::string tied = fmt::format("{}", fmt::join(w.tied, ", "));
     names +=
         fmt::format("{}{} {:.4g} -> {:.4g} {}{}", names.empty() ? "" : "; ", w.fit.full_name(), w.fit.start,
                     w.fit.value, w.fit.unit, tied.empty() ? "" : " (or " + tied + ": not distinguishable)");
   }
   const bool one = found.wrong.size() == 1;
-  return fmt::format(
-      "{} {} must change: {}. {} {:.3f} with {} ({}).{}",
-      one ? "One parameter" : fmt::format("{} parameters", found.wrong.size()),
-      found.fit.reduced_chi2() <= adequate ? "and no more" : "at least, although the residual exceeds noise,",
-      names, "The reduced chi-square is", found.fit.reduced_chi2(), one ? "it" : "them", left,
-      alternatives_text(found));
+  const bool enough = found.fit.reduced_chi2() <= adequate;
+  return fmt::format("{} {} must change{}: {}. The reduced chi-square is {:.3f} with {} ({}).{}",
+                     enough ? "Only" : "At least",
+                     one ? "one parameter" : fmt::format("{} parameters", found.wrong.size()),
+                     enough ? "" : ", and the residual still exceeds noise", names, found.fit.reduced_chi2(),
+                     one ? "it" : "them", left, alternatives_text(found));
 }
 
 std::string wrong_text(const WrongParameters& w) {
@@ -61,12 +61,10 @@ std::string wrong_text(const WrongParameters& w) {
   text += fmt::format("\n{:<16} {:>12} {:>12} {:>26} {:>6} {:>12} {:>10}  {}\n", "parameter", "model",
                       "fitted", "95 % interval", "unit", "evidence", "share", "alternative");
   for (const auto& p : w.found.wrong) {
-    std::string tied;
-    for (const auto& t : p.tied) tied += (tied.empty() ? "" : ", ") + t;
     text +=
         fmt::format("{:<16} {:>12.5g} {:>12.5g} {:>26} {:>6} {:>12.1f} {:>8.1f} %  {}\n", p.fit.full_name(),
                     p.fit.start, p.fit.value, fmt::format("{:.4g} to {:.4g}", p.fit.low, p.fit.high),
-                    p.fit.unit, p.evidence, 100 * p.share, tied);
+                    p.fit.unit, p.evidence, 100 * p.share, fmt::format("{}", fmt::join(p.tied, ", ")));
   }
   text +=
       "\nEvidence [chi2]: increase of the cost if this parameter keeps its value and the "

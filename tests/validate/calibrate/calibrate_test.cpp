@@ -140,10 +140,11 @@ TEST(Calibrate, FindsTheTruthAndExplainsTheUnseenEvent) {
   EXPECT_GT(c.events[3].before, 3 * c.events[3].after);
   EXPECT_LT(parameter(c, "EMIN").fit.decided, 0.1);  // Efd never reaches it
   EXPECT_TRUE(std::ranges::any_of(c.unidentified, [&](const UnidentifiedCombination& b) {
-    return c.parameters[static_cast<std::size_t>(b.members.front().parameter)].fit.name == "EMIN" && b.alone;
+    return c.parameters[static_cast<std::size_t>(b.members.front().parameter)].fit.name == "EMIN" &&
+           b.alone();
   }));
   const auto json = calibration_json(c);
-  EXPECT_EQ(json["verdict"], "parameters were poor");
+  EXPECT_EQ(json["verdict"], "parameter values were wrong");
   EXPECT_EQ(json["parameters"].size(), c.parameters.size());
 }
 

@@ -28,9 +28,7 @@ std::vector<fit::EventFit> Bench::each(const sim::plant::PlantUnderTest& tested,
       all_.size(),
       [&](std::size_t e) {
         fit::Fit f = fit::fit(tested, all_.alone(e), {});
-        if (!f.failed.empty())
-          throw InputError({"playback of the record fails", all_[e].record.name, f.failed,
-                            "check the model's parameters and the record's base and units"});
+        if (!f.failed.empty()) throw event::playback_failure(all_[e].record.name, f.failed);
         fits[e] = std::move(f.events.front());
       },
       [&](int done) { report_progress(phase, done, static_cast<int>(all_.size())); });

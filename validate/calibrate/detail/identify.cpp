@@ -117,7 +117,6 @@ std::vector<UnidentifiedCombination> find_unidentified(const Eigen::MatrixXd& in
         combination.members.push_back({static_cast<int>(i), v[i] * unit[i] / std::sqrt(1 + value)});
     std::ranges::sort(combination.members, std::ranges::greater{},
                       [&](const UnidentifiedCombination::Member& m) { return std::abs(v[m.parameter]); });
-    combination.alone = combination.members.size() == 1;
     unidentified.push_back(combination);
   }
   return unidentified;
@@ -148,7 +147,7 @@ std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
   for (const auto& [what, event] : {
            std::pair{std::string("a frequency event (-0.3 Hz within 5 s)"), frequency_event(like)},
            std::pair{fmt::format("a deep fault (V to {:.2f} pu for 0.15 s)", 0.2 * V), deep_fault(like)},
-           std::pair{fmt::format("a lasting step of the voltage (-3 %, to {:.3f} pu)", 0.97 * V),
+           std::pair{fmt::format("a permanent voltage step (−3 %, to {:.3f} pu)", 0.97 * V),
                      voltage_step(like)},
            std::pair{fmt::format("a load rejection (V up by 15 %, to {:.2f} pu, for 3 s)", 1.15 * V),
                      voltage_rise(like)},
