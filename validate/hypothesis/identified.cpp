@@ -270,8 +270,8 @@ class Identifying {
         } else if (leader) {
           j.behind = h.cost - leader->cost;
           j.why_not = fmt::format(
-              "not fitted: chi-square of its preliminary fit on the reduced plant ({} as input) is "
-              "higher by {:.0f} than that of {}",
+              "not fitted: the chi-square of its preliminary fit to the inferred {} is higher by {:.0f} "
+              "than that of {}",
               h.input() == InputKind::torque ? "torque" : "field voltage", j.behind, leader->hypothesis.name);
         } else {
           j.gain = none_ - h.cost;

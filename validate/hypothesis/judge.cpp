@@ -54,7 +54,7 @@ std::string objection(const std::vector<HeldOut>& held_out, double evidence, dou
   for (const HeldOut& h : held_out)
     if ((h.cost_after > thresholds::held_out.worse * h.cost_before && h.cost_after > adequate) ||
         h.saves() < -std::max(thresholds::held_out.costs.value, thresholds::held_out.costs_share * evidence))
-      return fmt::format("does not improve held-out {}", h.record);
+      return fmt::format("increases the error of held-out {}", h.record);
   for (const HeldOut& h : held_out)
     if (h.cost_after > thresholds::held_out.predicts &&
         h.cost_after > thresholds::held_out.falls * h.cost_before)
@@ -88,7 +88,8 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   j.why_not = objection(j.held_out, j.gain, trial.adequate);
   if (!j.why_not.empty()) return;
   if (j.fit.reduced_chi2() > trial.adequate) {
-    j.why_not = fmt::format("reduced chi-square {:.2f}: residual exceeds noise", j.fit.reduced_chi2());
+    j.why_not = fmt::format("reduced chi-square {:.2f}, above {:.2f}: the residual exceeds noise",
+                            j.fit.reduced_chi2(), trial.adequate);
     return;
   }
   j.accepted = true;

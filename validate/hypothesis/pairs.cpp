@@ -92,7 +92,7 @@ Judgement crossed(const BaseModel& base_model, const Cross& cross) {
   Judgement none;
   none.hypothesis.with = cross.stays;
   none.hypothesis.name = cross.joins;
-  none.fit.failed = "one of its effects requires another effect";
+  none.fit.failed = "one of its effects can be added only together with another effect";
   const auto named = [](std::vector<Hypothesis> all, const std::string& name) {
     std::erase_if(all, [&](const Hypothesis& h) { return h.name != name; });
     return all;

@@ -49,7 +49,7 @@ struct UserModelParameter {
 struct UserModelCandidate {
   fit::InputKind kind = fit::InputKind::torque;  ///< input to which the model's output is added
   std::string family;             ///< "static", "lagged", "limited", "dead-banded", "periodic", "step", ...
-  std::string signal;             ///< name in kUserModelSignals, "time" or "time since the voltage moved"
+  std::string signal;             ///< name in kUserModelSignals, "time" or "time since the voltage deviation"
   std::string words;              ///< description with {name} in place of a parameter's value
   std::string value, body;        ///< expression and tables of the TOML file
   std::string requirements = "";  ///< conditions on the parameters in the TOML file, in quotes

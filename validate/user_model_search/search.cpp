@@ -153,7 +153,7 @@ class Searcher {
   }
   void write_out(UserModelFinding& f, const std::vector<UserModelTrace>& traces) const {
     if (f.judgement.why_not.empty() && !f.judgement.accepted)
-      f.judgement.why_not = "not judged: other models fit better";
+      f.judgement.why_not = "not tested on held-out events: other models fit better";
     const auto& own = f.judgement.hypothesis.free;
     std::vector<fit::FittedParameter> values;
     for (const auto& p : f.judgement.fit.parameters)
@@ -212,8 +212,8 @@ std::string user_model_sentence(const UserModelSearch& search, std::size_t hypot
     after += h.after / static_cast<double>(unseen.size());
   }
   return fmt::format(
-      "None of the {} known effects explains the records; {} does: on held-out events the "
-      "normalised RMS falls from {:.1f} to {:.2f}.",
+      "None of the {} known effects explains the records. A user-defined model does: {}. On held-out "
+      "events the normalised RMS falls from {:.1f} to {:.2f}.",
       hypotheses, user_model->words, std::sqrt(before), std::sqrt(after));
 }
 

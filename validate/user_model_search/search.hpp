@@ -50,8 +50,8 @@ struct Unexplained {
 /// explains most of the residual.
 UserModelSearch search_user_models(const Unexplained& case_, const event::Progress& report = {});
 
-/// Returns for example "None of the 31 known effects explains the records; a torque of ... does: ..."; empty
-/// without an accepted model.
+/// Returns for example "None of the 31 known effects explains the records. A user-defined model does: ...";
+/// empty without an accepted model.
 std::string user_model_sentence(const UserModelSearch& search, std::size_t hypotheses);
 
 /// Returns the plant with the user-defined model after the blocks of its slot, and sets `block` to its

@@ -35,18 +35,18 @@ TEST(Objection, RefusesImprovementAtTheCostOfAnEvent) {
   EXPECT_NEAR(event("b", 1.0, 1.03).saves(), -30, 1e-9);
   // 30 of chi2: above 20, and above 10 % of this evidence.
   EXPECT_THAT(objection({event("a", 1.2, 1.0), event("b", 1.0, 1.03)}, 200, kAdequate),
-              HasSubstr("improve held-out b"));
+              HasSubstr("increases the error of held-out b"));
   // Below 10 % of this evidence, and still as good as noise.
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.0, 1.03)}, 2000, kAdequate), IsEmpty());
 }
 TEST(Objection, RefusesDeteriorationOfABadEvent) {
   EXPECT_THAT(objection({event("a", 30.0, 1.0), event("b", 2.0, 2.1)}, 29000, kAdequate),
-              HasSubstr("improve held-out b"));
+              HasSubstr("increases the error of held-out b"));
 }
 TEST(Objection, EventIsNotPredicted_WhenTheFitWithoutItFails) {
   HeldOut none = event("b", 1.0, 1.0);
   none.cost_after = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(objection({event("a", 3.0, 1.0), none}, 2000, kAdequate), HasSubstr("improve held-out b"));
+  EXPECT_THAT(objection({event("a", 3.0, 1.0), none}, 2000, kAdequate), HasSubstr("increases the error of held-out b"));
 }
 TEST(HeldOutEvents, FailedFitPredictsNothing) {
   fit::ExciterExample example(0.2);

@@ -88,7 +88,7 @@ TEST(UserModelCandidates, PulseDelayCountsFromTheEvent) {
   });
   const auto best = user_model_candidates(fit::InputKind::field, traces, kLevel).front();
   EXPECT_EQ(best.family, "pulse");
-  EXPECT_EQ(best.signal, "time since the voltage moved");
+  EXPECT_EQ(best.signal, "time since the voltage deviation");
   // The knots are 0.1 s apart.
   EXPECT_NEAR(value_of(best, "delay"), 1.0, 0.1);
   EXPECT_NEAR(value_of(best, "length"), 1.5, 0.1);
@@ -97,7 +97,7 @@ TEST(UserModelCandidates, PulseDelayCountsFromTheEvent) {
 TEST(UserModelCandidates, NoVoltageTrigger_WhenTheVoltageIsConstant) {
   const auto traces = traces_with([](const UserModelTrace&, double speed, double) { return -5 * speed; });
   for (const auto& user_model : user_model_candidates(fit::InputKind::torque, traces, 0.0))
-    EXPECT_NE(user_model.signal, "time since the voltage moved") << user_model.family;
+    EXPECT_NE(user_model.signal, "time since the voltage deviation") << user_model.family;
 }
 
 /// Every user-defined model file can be read, rests at the operating point, and has the output that was
@@ -239,7 +239,7 @@ TEST(UserModelSearchTest, FindsTorqueLimitedAboveASpeed) {
     }
   }
   EXPECT_THAT(user_model_sentence(s, 30),
-              testing::HasSubstr("None of the 30 known effects explains the records; a torque of -0.0"));
+              testing::HasSubstr("explains the records. A user-defined model does: a torque of -0.0"));
   // The file contains the user-defined model that was judged.
   const sim::Effect read = sim::user_models::make_user_model(f.toml, "found.toml");
   for (std::size_t i = 0; i < read.parameters.size(); ++i)

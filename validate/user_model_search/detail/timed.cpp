@@ -109,7 +109,7 @@ class Timed {
     UserModelCandidate user_model;
     user_model.kind = kind_;
     user_model.family = shape.family + (clock.scaled ? ", in proportion" : "");
-    user_model.signal = clock.triggered ? "time since the voltage moved" : "time";
+    user_model.signal = clock.triggered ? "time since the voltage deviation" : "time";
     user_model.parameters.push_back(
         {"A", clock.scaled ? "-" : "pu",
          shape.kind == Kind::sine ? at.result.factors.norm() : at.result.factors[0], -20, 20, true,
@@ -164,14 +164,15 @@ class Timed {
     user_model.parameters.push_back(
         {"phase", "rad", phase, 0, 20, false, "phase in the middle of the records"});
     user_model.body += fmt::format("turned = \"{} - {:g}\"\n", now, middle);
-    replace(user_model.words, "{centre}",
-            fmt::format("{:g} s {}", middle, clock.triggered ? "after that" : "of the record"));
+    replace(
+        user_model.words, "{centre}",
+        fmt::format("{:g} s {}", middle, clock.triggered ? "after the voltage deviation" : "of the record"));
   }
   [[nodiscard]] std::string trigger() const {
     return fmt::format(
-        "\n[states.moved]\nunit = \"-\"\nmeaning = \"1 once the voltage has left its band\"\n"
+        "\n[states.moved]\nunit = \"-\"\nmeaning = \"1 after the voltage has left its band\"\n"
         "derivative = \"100 * clamp(abs(V - V0) / {0:.4g} - 1, 0, 1) * (1 - moved)\"\n"
-        "\n[states.since]\nunit = \"s\"\nmeaning = \"time since then\"\nderivative = \"moved\"\n",
+        "\n[states.since]\nunit = \"s\"\nmeaning = \"time since the voltage left its band\"\nderivative = \"moved\"\n",
         level_);
   }
 
