@@ -20,10 +20,12 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-const reduced::FreeInput* better_input(const Diagnosis& d) {
-  const bool torque = !d.torque.fit.events.empty(), field = !d.field.fit.events.empty();
-  if (torque && (!field || d.torque.reduced_chi2() <= d.field.reduced_chi2())) return &d.torque;
-  return field ? &d.field : nullptr;
+/// Returns the accepted effect, or else the accepted user-defined model; nullptr if there is none.
+const hypothesis::Judgement* accepted_effect(const Diagnosis& d) {
+  if (d.verdict == Verdict::adequate) return nullptr;
+  if (!d.ranked.empty() && d.ranked.front().accepted && !d.ranked.front().fit.events.empty())
+    return &d.ranked.front();
+  return d.user_models.found() ? &d.user_models.found()->judgement : nullptr;
 }
 
 /// Returns modelled - measured [pu].
@@ -189,12 +191,16 @@ nlohmann::json hypothesis_json(const hypothesis::Judgement& h) {
 
 }  // namespace
 
+const reduced::FreeInput* better_input(const Diagnosis& d) {
+  const bool torque = !d.torque.fit.events.empty(), field = !d.field.fit.events.empty();
+  if (torque && (!field || d.torque.reduced_chi2() <= d.field.reduced_chi2())) return &d.torque;
+  return field ? &d.field : nullptr;
+}
+
 ReportFigures report_figures(const Diagnosis& d) {
   ReportFigures figures;
-  const bool named = !d.ranked.empty() && d.ranked.front().accepted && !d.ranked.front().fit.events.empty();
-  const hypothesis::Judgement* best = named ? &d.ranked.front() : nullptr;
-  if (!best && d.user_models.found()) best = &d.user_models.found()->judgement;
-  if (d.verdict != Verdict::adequate && best) {
+  const hypothesis::Judgement* best = accepted_effect(d);
+  if (best) {
     figures.after = &best->fit;
     figures.after_name = hypothesis::full_name(best->hypothesis);
   } else if (d.verdict == Verdict::unexplained) {
@@ -286,10 +292,7 @@ std::vector<compare::Played> play_models(const plant::PlantModel& model, const D
     return compare::play_and_judge(name, other, measured, options, by);
   };
   std::vector<compare::Played> played = {play("submitted", model.plant, model.conventions)};
-  const hypothesis::Judgement* best =
-      d.ranked.empty() || !d.ranked.front().accepted ? nullptr : &d.ranked.front();
-  if (!best && d.user_models.found()) best = &d.user_models.found()->judgement;
-  if (best && d.verdict != Verdict::adequate)
+  if (const hypothesis::Judgement* best = accepted_effect(d))
     played.push_back(play("with " + hypothesis::full_name(best->hypothesis), best->fit.plant,
                           best->hypothesis.conventions));
   played.push_back(play("refitted", d.base.plant, model.conventions));

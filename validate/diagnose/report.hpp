@@ -34,6 +34,9 @@ struct ReportFigures {
   std::string after_name;           ///< for example "SEXS", "the inferred field voltage"
   std::vector<ReportEvent> events;  ///< one for each event
 };
+/// Returns the inferred input with the lower reduced chi-square; nullptr if none was inferred.
+const reduced::FreeInput* better_input(const Diagnosis& diagnosis);
+
 /// Returns the figures. `after` is the best hypothesis if one was accepted, otherwise the user-defined model
 /// that was found, otherwise the inferred input with the lower chi2. Refers to `diagnosis`, which must
 /// outlive the result.

@@ -1,5 +1,6 @@
 // The page of a diagnosis: verdict, worst event, side, candidates, events, provenance.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -239,9 +240,7 @@ class DiagnosisPage {
     page_.add(bars);
     const std::size_t worst =
         !played_.empty() && !played_.front().events.empty() ? compare::worst_event(played_.front()).first : 0;
-    const bool torque = d_.field.fit.events.empty() || (!d_.torque.fit.events.empty() &&
-                                                        d_.torque.reduced_chi2() <= d_.field.reduced_chi2());
-    torque ? input(worst, d_.torque, kTorque) : input(worst, d_.field, kField);
+    better_input(d_) == &d_.field ? input(worst, d_.field, kField) : input(worst, d_.torque, kTorque);
     page_.add(report::End{});
     if (d_.side != hypothesis::Side::none)
       page_.text(fmt::format("Side: {}.", hypothesis::side_name(d_.side)));
@@ -298,12 +297,10 @@ class DiagnosisPage {
          "alternative"},
         {}};
     for (const auto& w : d_.wrong->wrong) {
-      std::string tied;
-      for (const auto& t : w.tied) tied += (tied.empty() ? "" : ", ") + t;
       table.rows.push_back({w.fit.full_name(), w.fit.unit, value_text(w.fit.start), value_text(w.fit.value),
                             fmt::format("{} … {}", value_text(w.fit.low), value_text(w.fit.high)),
                             fmt::format("{:.0f}", w.evidence), fmt::format("{:.0f} %", 100 * w.share),
-                            tied.empty() ? "–" : tied});
+                            w.tied.empty() ? "–" : fmt::format("{}", fmt::join(w.tied, ", "))});
     }
     page_.add(table);
   }

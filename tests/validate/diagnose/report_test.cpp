@@ -152,8 +152,8 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
   const auto& written = j["after"]["parameters"];
   ASSERT_EQ(parameters.size(), written.size());
   for (std::size_t i = 0; i < written.size(); ++i) {
-    EXPECT_EQ(parameters[i][0],
-              written[i]["effect"].get<std::string>() + " " + symbol(written[i]["effect"], written[i]["name"]));
+    EXPECT_EQ(parameters[i][0], written[i]["effect"].get<std::string>() + " " +
+                                    symbol(written[i]["effect"], written[i]["name"]));
     char text[32];
     std::snprintf(text, sizeof text, "%.4g", written[i]["value"].get<double>());
     EXPECT_EQ(parameters[i][4], text);
@@ -239,7 +239,7 @@ TEST(DiagnosisReportTest, PageShowsTheUserModelsOfTheJson) {
   EXPECT_THAT(html, HasSubstr("7 model structures were ranked"));
   EXPECT_THAT(html, HasSubstr("Found: -20 * V &lt; 0.5."));
   EXPECT_THAT(html, HasSubstr("inferred field voltage"));
-  const auto rows = table_after(html.substr(section), "share of the input");
+  const auto rows = table_after(html.substr(section), "explained share of the inferred input");
   ASSERT_EQ(rows.size(), 2U);
   EXPECT_EQ(rows[0][0], "LAW1");
   EXPECT_EQ(rows[0][1], "83 %");

@@ -91,8 +91,8 @@ void user_models_on_page(const Diagnosis& d, report::Document& page) {
   page.text(
       fmt::format("No known effect explains the records. The charts show the {} over time and against "
                   "every possible input signal. {} model structures were ranked by their fit to it "
-                  "(proportional, lag, washout, limit, dead band, polynomial, periodic, or started at a "
-                  "time or by the voltage). The leading {} were fitted to the records. A user-defined "
+                  "(proportional, lag, washout, limit, dead band, polynomial, periodic, or triggered by "
+                  "time or by voltage). The leading {} were fitted to the records. A user-defined "
                   "model is accepted only if it predicts held-out events.",
                   input_name(s), s.ranked.size(), s.findings.size()));
   if (const user_model_search::UserModelFinding* f = s.found())
@@ -102,8 +102,8 @@ void user_models_on_page(const Diagnosis& d, report::Document& page) {
   add_time_series(d, page);
   add_scatters(d, page);
   report::Table table{"",
-                      {"model", "share of the input", "evidence", "normalised RMS", "held-out events",
-                       "judgement", "description"},
+                      {"model", "explained share of the inferred input", "evidence", "normalised RMS",
+                       "held-out events", "judgement", "description"},
                       {}};
   for (const auto& f : s.findings)
     table.rows.push_back({f.judgement.hypothesis.name, fmt::format("{:.0f} %", 100 * f.user_model.explained),

@@ -163,7 +163,7 @@ void refuse_all(Diagnosis& d) {
   for (hypothesis::Judgement& j : d.ranked) {
     if (!j.accepted) continue;
     j.accepted = false;
-    j.why_not = fmt::format("far less probable than: {}", d.probabilities.front().name);
+    j.why_not = fmt::format("much less probable than: {}", d.probabilities.front().name);
   }
 }
 
@@ -193,7 +193,7 @@ void name_best(const user_model_search::Unexplained& judged, Diagnosis& d) {
                     does, report::probability_text(first->probability),
                     others.empty() ? "" : ", or " + set_text(others, pairs));
   else
-    d.sentence = fmt::format("Undecided, one of these {}: {}", does, set_text(set, pairs));
+    d.sentence = fmt::format("Undecided: one of these effects {}: {}", does, set_text(set, pairs));
   d.sentence += fmt::format(": {}.", fall_of_error(d.base, best));
   if (set.size() > 1 && pairs) d.sentence += " " + by_effect_sentence(d);
   d.would_decide = hypothesis::what_would_decide(d.ranked, d.probabilities, judged.trial.events,
@@ -279,7 +279,7 @@ void interrupt(Diagnosis& d) {
   std::string leading;
   for (const auto& j : d.ranked)
     if (j.fitted && j.fit.failed.empty() && j.gain > thresholds::evidence.accepted && leading.empty())
-      leading = fmt::format("{} led with an evidence of {:.0f}, but was not judged on held-out events",
+      leading = fmt::format("{} had the highest evidence ({:.0f}), but was not judged on held-out events",
                             hypothesis::full_name(j.hypothesis), j.gain);
   d.sentence = fmt::format(
       "Interrupted before a verdict. With refitted parameters the reduced chi-square is {:.2f}; {}.",
