@@ -33,10 +33,10 @@ FleetPlant read_plant(Config& c, const std::string& name, const fs::path& folder
                                             {.meaning = "plant file, relative to the folder of this file"});
   p.records = c.require<std::vector<std::string>>(
       at + "records",
-      {.meaning = "records of two events or more: files and globs, relative to the folder of this file"});
+      {.meaning = "records of at least two events: files and globs, relative to the folder of this file"});
   read_options(c, at, p);
   if (c.has(at + "records") && p.records.empty())
-    c.problem(at + "records", "no record", "a diagnosis needs those of two events or more",
+    c.problem(at + "records", "no record", "a diagnosis needs the records of at least two events",
               "list files or globs");
   return p;
 }
@@ -50,12 +50,12 @@ Fleet read_fleet(Config& c, const fs::path& file) {
       fleet.plants.push_back(read_plant(c, name, fleet.folder, common));
       continue;
     }
-    c.problem("plant", "plant '" + name + "'", "the name becomes that of a folder",
+    c.problem("plant", "plant '" + name + "'", "the plant's result folder has the same name",
               "use letters, digits, - and _ only");
     c.ignore("plant");
   }
   if (c.keys("plant").empty())
-    c.problem("plant", "no plant", "a fleet has one [plant.NAME] at least", "see configs/fleet/README.md");
+    c.problem("plant", "no plant", "a fleet needs at least one [plant.NAME]", "see configs/fleet/README.md");
   c.raise();
   return fleet;
 }

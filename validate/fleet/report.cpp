@@ -64,7 +64,7 @@ std::size_t kind_of(const FleetRow& r) {
   if (r.verdict == "unexplained") return 0;
   if (r.verdict == "missing" || r.verdict == "confusable") return 1;
   if (r.failed()) return 3;
-  if (!r.adequate()) throw std::logic_error("a fleet's row with the verdict " + r.verdict);
+  if (!r.adequate()) throw std::logic_error("unknown verdict of a fleet row: " + r.verdict);
   return r.error.fit == "no" ? 2 : 4;
 }
 int count(const std::vector<FleetRow>& rows, std::size_t kind) {
@@ -158,9 +158,9 @@ std::string fleet_caution(const std::vector<FleetRow>& rows) {
   std::string text = "False verdicts: ";
   if (named)
     text += fmt::format(
-        "under noise alone, the probability of an effect at any plant with a named effect is at "
-        "most {:.0e}. This excludes noise of the played-in voltage, wrong instruments, records "
-        "of another plant and unlisted effects. ",
+        "the probability that noise alone caused any of the named effects is at most {:.0e}. Not "
+        "included: noise of the played-in voltage, wrong instruments, records of another plant and "
+        "unlisted effects. ",
         std::clamp(any, 1e-12, 1.0));
   return text +
          "Measured rates of false positives and of missed effects: docs/reference/blind-test-results.md.";
@@ -243,7 +243,8 @@ std::string fleet_csv(const std::vector<FleetRow>& rows) {
 }
 
 std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows) {
-  report::Document page{"Fleet: " + fleet.file.stem().string(), "every plant diagnosed from its own records"};
+  report::Document page{"Fleet: " + fleet.file.stem().string(),
+                        "each plant is diagnosed from its own records"};
   const int adequate = count(rows, kKinds.size() - 1);
   const bool good = adequate == static_cast<int>(rows.size()),
              bad = std::ranges::any_of(
@@ -264,12 +265,12 @@ std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows) {
     if (first == rows.end()) continue;
     const Kind& kind = kKinds.at(k);
     table.rows[static_cast<std::size_t>(first - rows.begin())].front().id = kind.id;
-    chips.chips.push_back(
-        {kind.name, std::to_string(count(rows, k)), kind.tone, kind.id, "first row of these plants"});
+    chips.chips.push_back({kind.name, std::to_string(count(rows, k)), kind.tone, kind.id,
+                           "go to the first plant of this kind"});
   }
   page.add(report::Chips{{chips}});
-  page.add(report::Paragraph{"fleet.csv: the same figures for a spreadsheet", report::Paragraph::Kind::hint,
-                             true, "fleet.csv"});
+  page.add(report::Paragraph{"fleet.csv: this table for a spreadsheet", report::Paragraph::Kind::hint, true,
+                             "fleet.csv"});
   page.add(table);
   add_failures(page, rows);
   page.note(fleet_caution(rows));

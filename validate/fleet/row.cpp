@@ -82,7 +82,7 @@ FleetRow read_row(const std::string& text, const std::string& where) {
             j.at("inputs_sha256")};
   } catch (const std::exception& error) {
     throw InputError(
-        {"no result of a plant", where, error.what(), "remove its folder and run the command again"});
+        {"not a result file of a plant", where, error.what(), "remove its folder and run the command again"});
   }
 }
 

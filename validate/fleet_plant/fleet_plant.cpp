@@ -160,7 +160,7 @@ void put_in_place(const fs::path& temporary, const fs::path& folder) {
 /// Throws InputError if the folder was not written by a fleet run, so that only such folders are replaced.
 void check_ours(const fs::path& folder) {
   if (!fs::exists(folder) || fs::exists(folder / "plant.json")) return;
-  throw InputError({"a folder that no fleet run has written", folder.string(), "it has no plant.json",
+  throw InputError({"the folder was not written by a fleet run", folder.string(), "it has no plant.json",
                     "move it away, or give another --out"});
 }
 

@@ -256,7 +256,7 @@ void run_fit(const Setup& setup, const json& request, const Emit& emit) {
       run_calibration(setup, model, request, one_at_a_time);
     }
   } catch (const Interrupted&) {
-    emit({{"type", "failed"}, {"text", "Stopped; the model is unchanged."}});
+    emit({{"type", "failed"}, {"text", "Stopped. The model is unchanged."}});
   } catch (const std::exception& error) {
     emit({{"type", "failed"}, {"text", error.what()}});
   }

@@ -181,7 +181,7 @@ nlohmann::json step_json(const Setup& setup, const Step& step, int number_of) {
           {"command", step.command},
           {"sentence", step.sentence},
           {"verdict", compare::headline(step.complete, step.played->fitness)},
-          {"reason", step.provisional ? "First look: switching times are being fitted."
+          {"reason", step.provisional ? "Preliminary: the switching times are still being fitted."
                                       : step.played->fitness.sentence},
           {"provisional", step.provisional},
           {"complete", step.complete},

@@ -19,8 +19,8 @@ std::shared_ptr<const compare::Played> played(const Setup& setup, const plant::P
   auto p = std::make_shared<compare::Played>(
       compare::play_and_judge("model", model, setup.measured, options, setup.by));
   if (p->events.empty())
-    throw InputError({"the model cannot follow the records", model.origin, p->fitness.not_judged,
-                      "return to the values before"});
+    throw InputError({"the model cannot be simulated with the records", model.origin, p->fitness.not_judged,
+                      "return to the previous values"});
   complete = compare::judge(p->events).adequate;
   for (auto& e : p->events) e.doubt.clear();  // large, and needed by the judgement only
   return p;
@@ -68,7 +68,8 @@ plant::PlantModel with_values(plant::PlantModel model, const Values& values) {
   Problems problems;
   for (const auto& [name, value] : values) {
     if (!std::isfinite(value))
-      problems.add("parameter " + name, "the live page", "its value is no number", "enter a number");
+      problems.add("parameter " + name, "the live page", "its value is not a finite number",
+                   "enter a number");
     else
       parameter_value(model.plant, find_parameter(model.plant, name)) = value;
   }

@@ -40,7 +40,7 @@ class Base {
     for (const char* key : {"raw", "dyr"}) {
       const auto path = table_[key].value<std::string>();
       if (!path)
-        say(std::string("no ") + key, "a dataset is about a grid", "see configs/datasets/README.md");
+        say(std::string("no ") + key, "a dataset needs a grid", "see configs/datasets/README.md");
       else
         table_.insert_or_assign(key, fs::absolute(file_.parent_path() / *path).lexically_normal().string());
     }
@@ -108,7 +108,7 @@ void add_effect_to(toml::table& dataset, const Base& base, const add::Addition& 
   if (added.hypothesis.replaces)
     throw InputError({"effect " + added.hypothesis.name, "--retrain",
                       "the datasets may differ only in an added effect, not in a replaced one",
-                      "retrain with the new model as the model"});
+                      "give the model that already contains the effect"});
   const sim::plant::Block* block = added_block(added);
   if (block != nullptr) {
     if (!dataset["attach"].is_array()) dataset.insert_or_assign("attach", toml::array{});
@@ -136,7 +136,7 @@ void add_effect_to(toml::table& dataset, const Base& base, const add::Addition& 
     box.insert_or_assign(p.name, toml::array{rounded(low, 4), rounded(high, 4)});
   }
   if (block == nullptr && added.own == 0)
-    throw InputError({"effect " + added.hypothesis.name, "--retrain", "a dataset has no way to state it",
+    throw InputError({"effect " + added.hypothesis.name, "--retrain", "a dataset cannot contain this effect",
                       "add it without --retrain"});
 }
 

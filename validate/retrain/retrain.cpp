@@ -100,26 +100,26 @@ void leave(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents
 }
 
 std::string figure(double value) {
-  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "cannot be run";
+  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "cannot be simulated";
 }
 std::string power(double rms) {
-  return std::isfinite(rms) ? fmt::format("{:.3g} MW, Mvar", rms) : "cannot be run";
+  return std::isfinite(rms) ? fmt::format("{:.3g} MW, Mvar", rms) : "cannot be simulated";
 }
 
 std::string sentence_of(const Retrained& r, const add::Addition& added) {
   std::string text = fmt::format(
       "On held-out events the network without {} estimates the {} with an error of {:.3g} "
-      "standard deviations of the drawn values, the network with it {:.3g}: smaller by a "
+      "standard deviations of the drawn values; the network with it has an error of {:.3g}, smaller by a "
       "factor of {:.3g} (midpoint of the intervals: {:.3g}).",
       added.hypothesis.name, r.truth ? "true parameters" : "fitted parameters", r.error[0], r.error[1],
       r.fall(), r.middle);
   if (r.error[1] > r.middle)
     text += " This is no better than the midpoint: train it with more data (--train-draws, --train-epochs).";
-  if (!std::isfinite(r.rms[1])) return text + " With its estimates the plant cannot be run.";
+  if (!std::isfinite(r.rms[1])) return text + " With its estimates the plant cannot be simulated.";
   return text + fmt::format(
                     " With its estimates the RMS error of P and Q is {}; with those of the other network {}.",
                     power(r.rms[1]),
-                    std::isfinite(r.rms[0]) ? "it is " + power(r.rms[0]) : "the plant cannot be run");
+                    std::isfinite(r.rms[0]) ? "it is " + power(r.rms[0]) : "the plant cannot be simulated");
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ Retrained compare_networks(const std::array<calibrate::NetworkEstimate, 2>& esti
   const auto unseen = std::ranges::count(r.events, false, &RetrainedEvent::seen);
   Problems problems;
   if (unseen == 0)
-    problems.add("no event held out", "--retrain", "networks are judged on held-out events",
+    problems.add("no event held out", "--retrain", "networks are evaluated on held-out events",
                  "hold out at least one with --hold-out");
   if (shared == 0)
     problems.add("no parameter that both networks learnt", estimates[0].network, "nothing can be compared",
@@ -189,10 +189,10 @@ std::string terminal_report(const Retrained& r) {
                     fmt::format("{:.2f}", r.error[1]), fmt::format("{:.2f}", r.middle)});
   report::Table events{"Events",
                        {"event", "", "parameter error without", "with", "P, Q rms without", "with",
-                        "chi2/value without", "with"},
+                        "red. chi2 without", "with"},
                        {}};
   for (const auto& e : r.events)
-    events.rows.push_back({e.record, e.seen ? "fitted" : "UNSEEN",
+    events.rows.push_back({e.record, e.seen ? "fitted" : "held out",
                            fmt::format("{:.2f}", e.parameter_error[0]),
                            fmt::format("{:.2f}", e.parameter_error[1]), power(e.rms[0]), power(e.rms[1]),
                            figure(e.reduced_chi2[0]), figure(e.reduced_chi2[1])});

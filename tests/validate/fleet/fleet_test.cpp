@@ -118,7 +118,7 @@ colour = "red"
     EXPECT_THAT(said, HasSubstr(words));
   EXPECT_THAT(problems("[options]\npower_only = true\n"), HasSubstr("no plant"));
   EXPECT_THAT(problems("[plant.\"../a\"]\nmodel = \"m\"\nrecords = [\"e\"]\n"),
-              HasSubstr("name becomes that of a folder"));
+              HasSubstr("result folder has the same name"));
   EXPECT_THAT(problems("[plant"), HasSubstr("fleet.toml"));
   EXPECT_THROW(load_fleet(folder / "nowhere.toml"), InputError);
 }

@@ -56,7 +56,7 @@ TEST_F(FleetPlantFiles, KeepsForeignFiles) {
   write("out/a/thesis.txt", "years of work");
   const FleetOutcome o = diagnose_plant(fleet, fleet.plants[0], folder / "out", {});
   EXPECT_TRUE(o.row.failed());
-  EXPECT_THAT(o.row.sentence, HasSubstr("no fleet run has written"));
+  EXPECT_THAT(o.row.sentence, HasSubstr("was not written by a fleet run"));
   EXPECT_EQ(slurp(folder / "out/a/thesis.txt"), "years of work");
   EXPECT_FALSE(fs::exists(folder / "out/a/plant.json"));
 }
