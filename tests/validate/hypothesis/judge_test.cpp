@@ -46,7 +46,8 @@ TEST(Objection, RefusesDeteriorationOfABadEvent) {
 TEST(Objection, EventIsNotPredicted_WhenTheFitWithoutItFails) {
   HeldOut none = event("b", 1.0, 1.0);
   none.cost_after = std::numeric_limits<double>::infinity();
-  EXPECT_THAT(objection({event("a", 3.0, 1.0), none}, 2000, kAdequate), HasSubstr("increases the error of held-out b"));
+  EXPECT_THAT(objection({event("a", 3.0, 1.0), none}, 2000, kAdequate),
+              HasSubstr("increases the error of held-out b"));
 }
 TEST(HeldOutEvents, FailedFitPredictsNothing) {
   fit::ExciterExample example(0.2);

@@ -405,7 +405,8 @@ TEST(FormatTest, NamesIgnoredColumns) {
   EXPECT_THAT(of("PK\x03\x04rest", "r.xlsx"), ElementsAre(HasSubstr("spreadsheet")));
   EXPECT_THAT(of("anything", "run.out"), ElementsAre(AllOf(HasSubstr("PSS/E"), HasSubstr("dyntools"))));
   EXPECT_THAT(of("anything", "RUN.OUTX"), ElementsAre(HasSubstr("PSS/E")));
-  EXPECT_THAT(of(std::string("ab\0cd\1\2\3 and more of it", 24), "r.bin"), ElementsAre(HasSubstr("a binary file")));
+  EXPECT_THAT(of(std::string("ab\0cd\1\2\3 and more of it", 24), "r.bin"),
+              ElementsAre(HasSubstr("a binary file")));
 }
 TEST(FormatTest, TextOfOtherEncodings) {
   const auto text = table("Zeit,U (kV),P (MW),Q (Mvar),f (Hz),K\xFChlung\n", 60,
