@@ -63,7 +63,7 @@ grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the n
 grep -q "^2 'SEXS' '1' " "$work/added/model.dyr" || fail "add wrote no .dyr of the example plant"
 sed '/^bus = 2/d' "$work/added/model.toml" >"$work/unnumbered.toml"
 "$swingbank" calibrate --model "$work/unnumbered.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/unnumbered" >"$work/said"
-grep -q 'no .dyr: no bus number' "$work/said" || fail "no word of the records"
+grep -q 'no .dyr was written: no bus number' "$work/said" || fail "no word of the records"
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/numbered" >/dev/null
 grep -q '^// changed or new: GENROU, SEXS' "$work/numbered/model.dyr" || fail "the records do not say what changed"
 cmp <("$swingbank" export --model "$work/numbered/model.toml" | grep -v '^//') <(grep -v '^//' "$work/numbered/model.dyr") || fail "model.dyr is not what export makes"
