@@ -28,10 +28,10 @@ struct CurveFit {
   std::vector<fit::FittedParameter> parameters;
   std::vector<EventScore> events;  ///< with prepared switching times and start, which are not fitted
   double rms_before = 0,
-         rms_after = 0;  ///< RMS error of P and Q in the fitted events [pu on the record's base]
-  /// Reduced chi-square of the fitted events before and after the fit; largest limit of these events.
-  double before = 0, after = 0, limit = 0;
-  int iterations = 0;                        ///< number of iterations
+         rms_after = 0;          ///< RMS error of P and Q in the fitted events [pu on the record's base]
+  double before = 0, after = 0;  ///< reduced chi-square of the fitted events before and after the fit
+  double limit = 0;              ///< largest limit of the reduced chi-square of these events
+  int iterations = 0;            ///< number of iterations
   bool converged = false, adequate = false;  ///< adequate: every event within its limit
   std::string sentence;                      ///< result in words
   double seconds = 0;                        ///< elapsed time [s]

@@ -33,8 +33,8 @@ struct Signals {
   bool wraps_of_360 = false;  ///< the angle, as written in "rad", steps by about 360
   /// Ratio of the angle's rate to the deviation of frequency or speed: 1 if consistent, 0 if unknown.
   double angle_per_frequency = 0;
-  /// Length and start of the longest run of samples that equal the previous one in V, theta, P and Q.
-  std::size_t longest_repeat = 0, repeat_start = 0;
+  std::size_t longest_repeat = 0;  ///< longest run of samples that equal the previous one in V, theta, P, Q
+  std::size_t repeat_start = 0;    ///< first sample of this run
 };
 
 /// Returns the statistics of a record with at least kMinSamples finite samples.
