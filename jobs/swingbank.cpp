@@ -72,8 +72,8 @@ int refuse(std::string_view wanted, const fs::path& folder, const std::vector<Co
   if (!swingbank::is_first_rank()) return 1;
   const auto declared = std::ranges::find(kDeclared, wanted, &Command::name);
   if (declared != kDeclared.end()) {
-    fmt::print(stderr, "command '{}' is not installed (no {}{} in {}): {}\n", wanted, kPrefix, wanted,
-               folder.string(),
+    fmt::print(stderr, "command '{}' is not installed at {} (no {}{} there): {}\n", wanted, folder.string(),
+               kPrefix, wanted,
                declared->component.empty() ? "run it in a build folder"
                                            : "install " + std::string(kPrefix) + declared->component);
     return 1;
@@ -84,8 +84,8 @@ int refuse(std::string_view wanted, const fs::path& folder, const std::vector<Co
   const std::string guess = swingbank::nearest_word(wanted, names);
   const std::string remedy =
       guess.empty() ? "run swingbank --help for the list" : fmt::format("did you mean '{}'?", guess);
-  fmt::print(stderr, "unknown command '{}' (no {}{} in {}): {}\n", wanted, kPrefix, wanted, folder.string(),
-             remedy);
+  fmt::print(stderr, "unknown command '{}' at {} (no {}{} there): {}\n", wanted, folder.string(), kPrefix,
+             wanted, remedy);
   return 1;
 }
 

@@ -39,10 +39,11 @@ inline T exponential_saturation(const T& s10, const T& exponent, const T& flux_s
 /// Quadratic saturation as a template policy of a machine: coefficients `a`, `b`, Se as a function of psi^2,
 /// and the test of the two factors. ExponentialSaturation has the same members.
 struct QuadraticSaturation {
-  static constexpr std::string_view
-      /// Reason of the error message about two factors without a curve, and its remedy.
-      impossible = "no quadratic saturation curve has these factors S1.0 and S1.2",
-      remedy = "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation";
+  /// Reason of the error message about two factors without a curve.
+  static constexpr std::string_view impossible =
+      "no quadratic saturation curve has these factors S1.0 and S1.2";
+  /// Remedy in that message.
+  static constexpr std::string_view remedy = "give 1.2 S1.2 > S1.0, or S1.0 = 0 for no saturation";
   /// Whether a quadratic passes through both factors, or there is no saturation (S1.0 = 0).
   static bool possible(double s10, double s12) { return !(s10 > 0) || 1.2 * s12 > s10; }
   /// Computes the coefficients `a` [pu] and `b` [1/pu] from S1.0 and S1.2.
@@ -60,10 +61,11 @@ struct QuadraticSaturation {
 };
 /// Exponential saturation Se = S1.0 psi^x as a template policy of a machine; coefficients a = S1.0, b = x.
 struct ExponentialSaturation {
-  static constexpr std::string_view
-      /// Reason of the error message about two factors without a curve, and its remedy.
-      impossible = "no exponential saturation curve has these factors S1.0 and S1.2",
-      remedy = "give S1.2 > 0, or S1.0 = 0 for no saturation";
+  /// Reason of the error message about two factors without a curve.
+  static constexpr std::string_view impossible =
+      "no exponential saturation curve has these factors S1.0 and S1.2";
+  /// Remedy in that message.
+  static constexpr std::string_view remedy = "give S1.2 > 0, or S1.0 = 0 for no saturation";
   /// Whether a power of the flux passes through both factors, or there is no saturation (S1.0 = 0).
   static bool possible(double s10, double s12) { return !(s10 > 0) || s12 > 0; }
   /// Computes the coefficients a = S1.0 and b = x from S1.0 and S1.2.

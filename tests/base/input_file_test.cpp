@@ -55,8 +55,10 @@ TEST_F(InputFile, MissingFileNamesTheExampleOfThatPath) {
 
 TEST_F(InputFile, ReportsAPatternWithoutMatchingFiles) {
   EXPECT_THAT(sentence("configs/plants/o*.toml"),
-              AllOf(HasSubstr("none that matches"), HasSubstr((root() / "share/configs/plants").string())));
-  EXPECT_THAT(sentence("o*.toml"), AllOf(HasSubstr("none that matches"), HasSubstr("give another")));
+              AllOf(HasSubstr("no file matches this pattern"),
+                    HasSubstr((root() / "share/configs/plants").string())));
+  EXPECT_THAT(sentence("o*.toml"),
+              AllOf(HasSubstr("no file matches this pattern"), HasSubstr("give another")));
 }
 
 TEST_F(InputFile, ReportsUnreadableFileAsExisting) {

@@ -4,7 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 # the same options with the same descriptions in all four commands
-shared='model records columns from until component point power-only law switch jump-threshold pre-event out pdf quiet by accept json verbose threads'
+shared='model records columns from until component point power-only user-model switch step-threshold pre-event out pdf quiet by accept json verbose threads'
 for command in compare calibrate diagnose add; do
   "$swingbank" "$command" --help >"$work/help"
   for option in $shared; do

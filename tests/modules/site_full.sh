@@ -19,7 +19,7 @@ bash docs/site.sh "$work/site" || fail "second build"
 mkdir "$work/mine"
 echo mine >"$work/mine/file"
 ! bash docs/site.sh "$work/mine" 2>"$work/log" || fail "a folder of other files was replaced"
-grep -q "^files at $work/mine (" "$work/log" || fail "other files: $(cat "$work/log")"
+grep -q "^other files at $work/mine (" "$work/log" || fail "other files: $(cat "$work/log")"
 [[ $(cat "$work/mine/file") == mine ]] || fail "another file was replaced"
 
 mkdir -p "$work/tree/docs/site"

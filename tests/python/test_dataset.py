@@ -109,7 +109,7 @@ class Datasets(unittest.TestCase):
         (folder / "dataset.h5").unlink()
         with self.assertRaises(swingbank.InputError) as caught:
             swingbank.Dataset(folder)
-        self.assertIn("unfinished", str(caught.exception))
+        self.assertIn("incomplete", str(caught.exception))
 
 
 if __name__ == "__main__":

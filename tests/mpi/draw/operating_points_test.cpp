@@ -134,7 +134,8 @@ TEST(OperatingPoint, RedrawsAndCountsInfeasiblePoints) {
     OperatingPoints(hopeless).at(3);
     FAIL() << "nothing thrown";
   } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), AllOf(HasSubstr("no operating point for block 3"), HasSubstr("of 100 draws")));
+    EXPECT_THAT(e.what(), AllOf(HasSubstr("no operating point for block 3"),
+                                HasSubstr("of 100 random operating points")));
   }
 }
 

@@ -257,7 +257,7 @@ TEST(Grid, ModelsThatAreNotAvailableAreAllNamedAndCanBeIgnoredOrMapped) {
   const std::string all = formats::sentences_of([&] { load_with({}); });
   for (const char* part : {"unknown model 'GENROX'", "case.dyr:2", "unknown model 'IEEEX9'", "case.dyr:3",
                            "--ignore-model IEEEX9", "user-written model 'MYGOV'", "case.dyr:4",
-                           "--map-model GENROX=OTHER", "(14)"})
+                           "--map-model GENROX=OTHER", "with 14 parameters"})
     EXPECT_THAT(all, HasSubstr(part));
   formats::DyrOptions options{{"IEEEX9", "MYGOV"}, {{"GENROX", "GENROU"}}};
   const Grid grid = load_with(options);

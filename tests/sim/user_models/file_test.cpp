@@ -125,7 +125,7 @@ V1 = "V * 2"
     for (const char* part :
          {"'a b' in name at bad.toml:1:", "unknown name nothing in value at bad.toml:7:14",
           "unknown key surplus", "a requirement on more than parameters",
-          "the expression ends too early in require[1] at bad.toml:9:", "parameters.K.standard = 5.0",
+          "the expression ends too early in require[1] at bad.toml:9:", "parameters.K.default = 5.0",
           "parameter called speed",
           "a loop through loop in signals.loop at bad.toml:14:", "missing key states.x.meaning",
           "signal Efd in states.x.derivative at bad.toml:17:", "reference V1 varies during the run"})

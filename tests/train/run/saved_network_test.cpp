@@ -254,14 +254,14 @@ TEST(SavedNetwork, RefusesOtherFiles) {
   };
   r.save_network = false;
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
-  EXPECT_TRUE(has(refusal(r.out), "holds no .network file"));
+  EXPECT_TRUE(has(refusal(r.out), "contains no .network file"));
   EXPECT_TRUE(has(refusal(r.out / "x.network"), "there is no such file"));
   r.save_network = true;
   r.seed = 2;
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
   const auto file = r.out / (run_name(r) + ".network");
   std::filesystem::copy(file, r.out / "other.network");
-  EXPECT_TRUE(has(refusal(r.out), "2 networks"));
+  EXPECT_TRUE(has(refusal(r.out), "2 network files"));
   std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
   bytes.seekp(-5000, std::ios::end);
   bytes.put('\x7f');

@@ -114,7 +114,7 @@ model = 3
 records = []
 colour = "red"
 )");
-  for (const char* words : {"options.spread", "plant.a.model", "no record", "colour"})
+  for (const char* words : {"options.prior_sd", "plant.a.model", "no record", "colour"})
     EXPECT_THAT(said, HasSubstr(words));
   EXPECT_THAT(problems("[options]\npower_only = true\n"), HasSubstr("no plant"));
   EXPECT_THAT(problems("[plant.\"../a\"]\nmodel = \"m\"\nrecords = [\"e\"]\n"),

@@ -216,9 +216,8 @@ TEST_F(PlantModelTest, RecognisesDataOnTheSystemBase) {
   EXPECT_THAT(warnings(on_system(example_text(), "500", "0.02")),
               Contains(AllOf(HasSubstr("H = 500 s and Xd = 0.02 pu"), HasSubstr("probably on another base"),
                              HasSubstr("set base_mva to the machine's rating (about 10000 MVA)"))));
-  EXPECT_THAT(
-      load(replaced(example_text(), "H = 6.54", "H = 654")).warnings,
-      ElementsAre(AllOf(HasSubstr("H = 654 s"), HasSubstr(": 0.1 to 20 s"), HasSubstr("toml:23"))))
+  EXPECT_THAT(load(replaced(example_text(), "H = 6.54", "H = 654")).warnings,
+              ElementsAre(AllOf(HasSubstr("H = 654 s"), HasSubstr(": 0.1 to 20 s"), HasSubstr("toml:23"))))
       << "one slip is no other base";
   // A smaller factor suffices for unusual values: unit 34 of a public IEEE 39-bus case, on 1000 MVA.
   EXPECT_THAT(load(on_system(example_text(), "2.6", "6.7")).warnings,
