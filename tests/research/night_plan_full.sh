@@ -7,7 +7,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../jobs/tiny_experiment.bash"
 TINY_DRAWS=4000 TINY_TRAINING_DRAWS=1000 TINY_EPOCHS=100 tiny_experiment "$work"
 plan() { "$swingbank" night-plan "$work/tiny.toml" --preset quick --rates "${RATES:-$SWINGBANK_SOURCE/research/rates.toml}" "$@"; }
 written() { "$swingbank" train --experiment "$work/made/tiny.toml" --preset night --print "$1"; }
-hours() { sed -nE 's/^Preset .* work: ([0-9.]+) core-hours.*/\1/p' "$work/plan"; }
+hours() { sed -nE 's/^Preset .* scaled by [^:]*: ([0-9.]+) core-hours.*/\1/p' "$work/plan"; }
 
 plan >"$work/plan"
 grep -qF '| V | events | 1 | 4000 | – |' "$work/plan" || fail "events: $(cat "$work/plan")"
