@@ -39,8 +39,8 @@ inline bool stop_asked() { return detail::stop_asked != 0; }
 /// Exception of interruption_point(). Not a std::exception, so that no handler mistakes it for a failure.
 struct Interrupted {};
 
-/// Installs handlers after which a stop signal ends the work at its next interruption point, until
-/// catch_stop_signals() is called. For commands that report the values reached so far.
+/// Installs handlers: from now on, a stop signal ends the work at its next interruption point.
+/// catch_stop_signals() ends this. For commands that report the values reached so far.
 inline void interrupt_on_stop_signals() {
   catch_stop_signals();
   detail::interruptible = 1;

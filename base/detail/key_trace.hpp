@@ -61,10 +61,10 @@ class KeyTrace {
     KeyPath path;
     std::string key;                         ///< discriminator; empty: none
     std::vector<std::string> words, titles;  ///< its values and their descriptions
-    std::string opened_by;                   ///< key whose presence allows other words or names
+    std::string opened_by;                   ///< key whose presence allows words or names that are not listed
   };
-  /// `outcomes`: outcome of each decision by its id; a missing one is 0. `arrays`: for a value that may be a
-  /// table, an array or a text, whether it is an array or text.
+  /// `outcomes`: outcome of each decision by its id; a missing one is 0. `arrays`: a value that may be a
+  /// table, an array or a text is taken as an array or text; otherwise as a table.
   KeyTrace(std::map<std::string, std::size_t> outcomes, bool arrays)
       : outcomes_(std::move(outcomes)), arrays_(arrays) {}
 

@@ -1,5 +1,6 @@
 #pragma once
-// Tree of the keys of all passes of a reader, written as JSON Schema.
+// Tree of the keys for which a reader asks, collected over several passes (key_trace.hpp) and written as JSON
+// Schema.
 #include <map>
 #include <memory>
 #include <set>
@@ -50,7 +51,7 @@ class KeyTree {
   std::vector<KeyForm> forms_;
   std::vector<Json> conditions_;
   KeyTrace::Table branch_;
-  bool asked_for_ = false;              ///< whether a pass read it only because it is present
+  bool asked_for_ = false;              ///< whether a reader asks first whether the key is present
   int pass_ = 0;                        ///< number of passes so far; used in the root
   int touched_ = 0, last_touched_ = 0;  ///< passes that read a key of this table, and the last of them
   int needed_ = 0, last_needed_ = 0;    ///< passes that require it, and the last of them

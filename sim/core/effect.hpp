@@ -6,22 +6,22 @@
 //   parameters[], states[]        one record each; the only declaration of a parameter
 //   defaults_from, bounds_from   sources of defaults and bounds where a parameter's record gives none
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
-//   check()                       singular values, which are always refused
-//   unphysical()                  optional: violated ordering of values, which is refused in draws
-//   prepare<T>()                  computes coefficients from parameters, so that the loop has no division
-//   equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
+//   check()                       refuses values at which the equations fail, such as a divisor of 0
+//   unphysical()                  optional: values in an order that no machine has (Xd < X'd); random draws
+//   refuse it prepare<T>()                  computes coefficients from parameters, so that the loop has no
+//   division equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
 //   converter                     of a source, optional: true if it is a controlled current source
-//   at_shunt                      of a load, optional: layout of its .dyr records of switched shunts
-//   publish<T>()                  of a control, optional: outputs that are states, written before evaluation
-//   afterwards<T>()               of a control, optional: derivatives that need the field voltage
+//   at_shunt                      of a load, optional: layout of its .dyr records, if it models a switched
+//   shunt publish<T>()                  of a control, optional: outputs that are states, written before
+//   evaluation afterwards<T>()               of a control, optional: derivatives that need the field voltage
 //   guards, guard<T>()            of a control, optional: functions that are zero where its derivatives jump
 //   remark()                      optional: warning about values that request unmodelled behaviour
 //   elsewhere                     of a plant control, optional: parameters that select its measuring point
 //   switching_times()             optional: switching times of its equations
-//   closed_form()                 of a machine, optional: parameters from a record, without a search
+//   closed_form()                 of a machine, optional: its parameters from measurements, without a search
 //   measure(), memory()           of a measurement: its operation on phasors, and its memory [s]
-//   angle_lag()                   of a measurement, optional: lag of an angle integrated from its frequency
+//   angle_lag()                   of a frequency measurement, optional: lag of the angle integrated from it
 // CMake finds the header and generates the registry. T runs over `Scalars`.
 #include <algorithm>
 #include <array>
@@ -94,7 +94,7 @@ constexpr std::optional<Slot> reader_of(Slot slot) {
   }
 }
 
-/// Null value of a parameter that has none.
+/// Marks a parameter without a null value (a value at which the effect has no influence).
 constexpr double kNoNullValue = std::numeric_limits<double>::quiet_NaN();
 /// Placeholder for `default_from` in a parameter's record: the default's source is the effect's
 /// defaults_from.
@@ -150,10 +150,10 @@ struct State {
     int first = -1, second = -1;  ///< indices of the coefficients, -1: none
   };
   Movers moved_by = {};  ///< the state is constant while these are zero
-  /// Index of a coefficient that multiplies `weight` if it exceeds 1; -1: none.
+  /// Index of a coefficient that multiplies `weight` if the coefficient exceeds 1; -1: none.
   int weighed_by = -1;
   /// Whether the derivative has kinks that `low` and `high` do not describe. The error estimate of every step
-  /// then includes that of a kink.
+  /// then includes the error that a kink may cause.
   bool bends = false;
 };
 
@@ -194,7 +194,7 @@ struct Signals {
   T Vs{};              ///< stabiliser output [pu]
   T Vlimiter{};        ///< sum of the limiters' inputs to the voltage error [pu]
   T dVref{}, dPref{};  ///< changes of the exciter's and the governor's reference [pu]
-  /// Change of the governor's reference in its own unit [pu]: speed if a droop follows the reference, else
+  /// Change of the governor's reference [pu]: of speed if the reference enters before the droop, else of
   /// power.
   T dGref{};
   T t{};  ///< time [s], limited to just before the end of the integrated segment (kBeforeSwitching)
@@ -214,7 +214,7 @@ struct Signals {
 
 /// Equations of a machine: voltage `e` behind the constant impedance r + jx, both on the machine's base.
 /// State 0 is the rotor angle, state 1 the speed deviation. x: states; c: coefficients; m: scratch memory
-/// shared by the three calls of one evaluation.
+/// shared by the functions of one evaluation.
 template <class T>
 struct MachineOps {
   /// Parameters -> source impedance r + jx [pu on the machine's base].
@@ -244,8 +244,8 @@ struct ControlOps {
   /// Optional: writes outputs that are states before any control is evaluated, for controls earlier in the
   /// order.
   void (*publish)(const T* c, const T* x, Signals<T>& s) = nullptr;
-  /// Optional: computes Effect::guards smooth functions of states and signals. A derivative of the effect
-  /// jumps where one of them passes zero.
+  /// Optional: computes the guards, smooth functions of states and signals; Effect::guards is their number. A
+  /// derivative of the effect jumps where one of them passes zero.
   void (*guard)(const T* c, const T* x, const Signals<T>& s, T* g) = nullptr;
   /// Optional: completes derivatives after all controls are evaluated, from outputs of later controls such as
   /// the field voltage. dx holds the values written by evaluate().
@@ -307,7 +307,7 @@ struct Recording;
 /// `beside` further shunts has two fields: whether it is switched, and its id.
 struct ShuntRecord {
   std::string_view of_first, by_id;          ///< model names of the two layouts, empty: none
-  int regulated;                             ///< parameter with the regulated bus's number, the first column
+  int regulated;                             ///< parameter with the number of the regulated bus
   std::size_t columns;                       ///< number of columns before the further shunts
   std::size_t beside;                        ///< number of further shunts
   static constexpr std::size_t of_each = 2;  ///< fields of each further shunt

@@ -12,7 +12,7 @@ struct Model : shared::Diesel<Model> {
   dPref - w --> [ (1 + s T3)/(1 + s T1 + s^2 T1 T2) ] --> [ K (1 + s T4)/(s (1 + s T5)(1 + s T6)) ] --> throttle
          throttle and integral: [TMIN, TMAX], non-windup
   Pm = (1 + w) exp(-s TD) throttle
-  exp(-s TD): Pade approximation of orders 3 and 4; T1 = 0: no control box; T5 = 0: neither this lag nor the lead
+  exp(-s TD): Pade approximation of orders 3 and 4; T1 = 0: no control box; T5 = 0: neither the lag T5 nor the lead T4
 )";
   enum P { T1, T2, T3, K, T4, T5, T6, TD, TMAX, TMIN };
   static constexpr Parameter parameters[] = {kT1, kT2, kT3, kK, kT4, kT5, kT6, kTD, kTMAX, kTMIN};

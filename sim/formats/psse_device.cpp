@@ -1,5 +1,5 @@
-// Reader of .raw equipment without a model: dc lines, FACTS and GNE devices, induction machines. Only buses
-// and scheduled dc powers are read; the power follows from the file's solved voltages.
+// Reader of .raw equipment without a model: dc lines, FACTS and GNE devices, induction machines. It reads
+// their buses and scheduled dc powers; their ac power follows from the file's solved voltages.
 #include <algorithm>
 #include <cmath>
 

@@ -8,7 +8,7 @@ namespace swingbank::validate::hypothesis {
 
 /// Names of the explanations that are not effects.
 inline constexpr const char *kNothingMissing = "nothing missing", *kNoneOfThese = "none of these";
-///< no effect is missing; an unlisted effect is missing
+///< the first: no effect is missing; the second: an unlisted effect is missing
 
 /// An explanation of the records with its posterior probability.
 struct Explanation {
@@ -19,7 +19,8 @@ struct Explanation {
 };
 
 /// Computes the probabilities and returns the explanations, most probable first. `none`: evidence of an
-/// unlisted effect minus its threshold, from the free inputs and a steady oscillation. An unlisted effect may
+/// unlisted effect minus its threshold, from the inferred inputs (torque, field voltage) and from a steady
+/// oscillation. An unlisted effect may
 /// also resemble the best listed one, so its evidence is at least that of the best minus
 /// thresholds::evidence.accepted.
 std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
