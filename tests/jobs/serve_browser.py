@@ -165,7 +165,7 @@ until("the held-out event", lambda: one("hold").is_selected(), 20)
 # save; the page says what and where
 ActionChains(page).send_keys("s").perform()
 until("saving", lambda: "model.toml" in text("saved"), 60)
-assert "“+ SEXS”" in text("saved") and "in place of" in text("saved"), text("saved")
+assert "“+ SEXS”" in text("saved") and "replacing the existing files" in text("saved"), text("saved")
 
 # a stopped fit leaves the model as it is
 ActionChains(page).send_keys("f").perform()

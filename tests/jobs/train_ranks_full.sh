@@ -35,10 +35,12 @@ for network, others, tolerance in (("mlp", (2, 3, 7), 1e-5), ("cnn", (3,), 1e-3)
         assert worst < tolerance, (network, ranks, worst)
 PYTHON
 
-train 2 mlp whole || fail "whole run: $(cat "$work/log")"
+# Checkpoints are written every two seconds, so the runs take several.
+long=(--epochs 80)
+train 2 mlp whole "${long[@]}" || fail "whole run: $(cat "$work/log")"
 for killed in 0 1; do
   out=killed-$killed
-  train 2 mlp "$out" &
+  train 2 mlp "$out" "${long[@]}" &
   for _ in {1..600}; do
     [[ ! -s $work/$out/checkpoints/V-mlp-quick-seed1.checkpoint ]] || break
     sleep 0.05
@@ -48,7 +50,7 @@ for killed in 0 1; do
   done
   ! wait %+ || fail "rank $killed was not killed: $(cat "$work/log")"
   [[ ! -e $work/$out/V-mlp-quick-seed1.json ]] || fail "a killed run has a result"
-  train 2 mlp "$out" || fail "resumed after rank $killed was killed: $(cat "$work/log")"
+  train 2 mlp "$out" "${long[@]}" || fail "resumed after rank $killed was killed: $(cat "$work/log")"
   grep -q 'resumed at epoch' "$work/log" || fail "not resumed: $(cat "$work/log")"
   diff <(essence "$work/whole") <(essence "$work/$out") || fail "another result after rank $killed was killed"
 done
