@@ -119,7 +119,7 @@ void check_options(const Arguments& a) {
   if (a.retrain && a.until_adequate)
     problems.add("--retrain together with --until-adequate", "swingbank add",
                  "networks are trained for one effect", "name the effect");
-  if (a.retrain && a.effects.size() > 1)
+  if (a.retrain && add::effect_names(a.effects).size() > 1)
     problems.add("--retrain together with several effects", "swingbank add",
                  "two networks show the influence of one effect",
                  "add the other effects first, and retrain with the completed model");

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <chrono>
 #include <map>
+#include <sstream>
 
 #include "base/in_parallel.hpp"
 #include "base/nearest_word.hpp"
@@ -85,7 +86,9 @@ void calibrate_addition(Addition& a, const std::vector<record::Record>& records,
 /// Returns the effect's values if they are few enough for a sentence; the table of parameters has all.
 std::string own_values(const Addition& a) {
   constexpr int kInASentence = 6;
-  if (a.own > kInASentence) return fmt::format("Its {} values are in the table of parameters", a.own);
+  if (a.own > kInASentence)
+    return fmt::format("{} {} values are in the table of parameters", a.effects.size() > 1 ? "Their" : "Its",
+                       a.own);
   std::string text;
   for (int i = 0; i < a.own; ++i) {
     const auto& p = a.parameters[static_cast<std::size_t>(i)];
@@ -148,6 +151,15 @@ std::string Addition::name() const {
   return all;
 }
 
+std::vector<std::string> effect_names(const std::vector<std::string>& texts) {
+  std::vector<std::string> names;
+  for (const std::string& text : texts) {
+    std::istringstream parts(text);
+    for (std::string name; std::getline(parts >> std::ws, name, '+');) names.push_back(name);
+  }
+  return names;
+}
+
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name,
                                        const std::vector<record::Record>& records) {
   const hypothesis::RecordContents recorded = contents_of(model, records);
@@ -185,26 +197,12 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
 
 namespace {
 
-/// Returns the names in texts such as "FREQLAG + SEXS", without blanks at their ends.
-std::vector<std::string> split(const std::vector<std::string>& texts) {
-  std::vector<std::string> names;
-  for (const std::string& text : texts)
-    for (std::size_t from = 0, to = 0; to != std::string::npos; from = to + 1) {
-      to = text.find('+', from);
-      std::string name = text.substr(from, to == std::string::npos ? to : to - from);
-      while (!name.empty() && name.back() == ' ') name.pop_back();
-      name.erase(0, std::min(name.find_first_not_of(' '), name.size()));
-      names.push_back(std::move(name));
-    }
-  return names;
-}
-
 /// Returns the canonical names of the effects that `texts` name, sorted. Throws InputError with every name
 /// that cannot be added, alone or beside the others.
 std::vector<std::string> canonical_names(const plant::PlantModel& model,
                                          const std::vector<std::string>& texts,
                                          const std::vector<record::Record>& records) {
-  const std::vector<std::string> asked = split(texts);
+  const std::vector<std::string> asked = effect_names(texts);
   plant::PlantModel with = model;
   std::map<std::string, std::string> known;
   for (bool any = true; any;) {
@@ -228,13 +226,13 @@ std::vector<std::string> canonical_names(const plant::PlantModel& model,
       for (const Problem& p : e.problems()) problems.add(p.what, p.where, p.why, p.remedy);
     }
   }
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
-        names.begin() + static_cast<std::ptrdiff_t>(i))
-      problems.add("effect " + names[i] + " is named twice", "swingbank add", "it can be added once",
-                   "name it once");
-  problems.raise();
   std::ranges::sort(names);
+  if (const auto twice = std::ranges::adjacent_find(names); twice != names.end())
+    problems.add("effect " + *twice + " is named twice", "swingbank add", "it can be added once",
+                 "name it once");
+  if (asked.empty())
+    problems.add("no effect", "swingbank add", "nothing is named", "name at least one effect");
+  problems.raise();
   return names;
 }
 

@@ -61,6 +61,9 @@ struct Addition {
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name,
                                        const std::vector<record::Record>& records);
 
+/// Returns the names in texts of one or several names: "SEXS", "FREQLAG + SEXS".
+std::vector<std::string> effect_names(const std::vector<std::string>& texts);
+
 /// Adds the effects of these names together and scores them. A text may hold several names: "FREQLAG + SEXS".
 /// The order of the names has no influence on the result. Throws InputError with every name that cannot be
 /// added, and as calibrate does.

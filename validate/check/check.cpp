@@ -217,6 +217,7 @@ class Check : Findings {
 
   void voltage() {
     const double v = signals_.V.level, theta = signals_.theta_level;
+    // Grids are operated within 0.9 to 1.1 pu; base_kv may be a few per cent off the nominal voltage.
     if (within(v, 0.85, 1.15)) return;
     const std::string what = fmt::format("V = {:.4g} pu before the event", v);
     if (within(v, 0.7, 1.3))

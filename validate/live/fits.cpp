@@ -175,7 +175,7 @@ void run_addition(const Setup& setup, const plant::PlantModel& model, const json
   };
   const add::AddOptions options{.calibrate = fitting(setup, request, emit), .reached = reached};
   std::optional<add::Addition> quick;
-  if (effect.find('+') == std::string::npos)
+  if (add::effect_names({effect}).size() == 1)
     quick =
         add::add_at_once(model, add::find_hypothesis(model, effect, setup.records), setup.records, options);
   const add::Addition a = quick ? *quick : add::add_effects(model, {effect}, setup.records, options);

@@ -270,6 +270,9 @@ TEST(Add, ListsEveryNameThatCannotBeAdded) {
                 add_effects(model, {"SEXS", "nonesuch", "TGOV", "SEXS"}, records(model), power_only());
               }),
               UnorderedElementsAre(HasSubstr("'nonesuch'"), HasSubstr("'TGOV'"), HasSubstr("named twice")));
+  for (const std::vector<std::string>& nothing : {std::vector<std::string>{}, {""}, {" "}})
+    EXPECT_THAT(test::messages([&] { add_effects(model, nothing, records(model), power_only()); }),
+                ElementsAre(HasSubstr("at least one effect")));
 }
 
 }  // namespace
