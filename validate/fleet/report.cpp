@@ -58,14 +58,13 @@ constexpr std::array<Kind, 5> kKinds = {{{"unexplained", "unexplained", report::
                                          {"refit", "adequate after refit", report::Tone::warn, 0.3},
                                          {"failed", "failed", report::Tone::bad, 1.0},
                                          {"adequate", "adequate", report::Tone::good, 0.0}}};
-/// Returns the position of a row's kind in kKinds. A model that is adequate only with refitted parameters,
-/// and not fit for purpose as submitted, has wrong parameters.
+/// Returns the position of a row's kind in kKinds.
 std::size_t kind_of(const FleetRow& r) {
   if (r.verdict == "unexplained") return 0;
   if (r.verdict == "missing" || r.verdict == "confusable") return 1;
   if (r.failed()) return 3;
-  if (!r.adequate()) throw std::logic_error("unknown verdict of a fleet row: " + r.verdict);
-  return r.error.fit == "no" ? 2 : 4;
+  if (r.verdict != "adequate") throw std::logic_error("unknown verdict of a fleet row: " + r.verdict);
+  return r.adequate() ? 4 : 2;
 }
 int count(const std::vector<FleetRow>& rows, std::size_t kind) {
   return static_cast<int>(std::ranges::count(rows, kind, kind_of));
@@ -174,7 +173,7 @@ std::string fleet_text(const std::vector<FleetRow>& rows) {
 }
 
 std::string fleet_json(const Fleet& fleet, const std::vector<FleetRow>& rows) {
-  nlohmann::json j = {{"format", "swingbank-fleet-4"},
+  nlohmann::json j = {{"format", "swingbank-fleet-5"},
                       {"fleet", fleet.file.string()},
                       {"software", "swingbank " SWINGBANK_VERSION},
                       {"summary", fleet_summary(rows)},

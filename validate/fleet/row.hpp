@@ -34,7 +34,9 @@ struct FleetRow {
   std::string sentence;  ///< verdict, or the problems, one per line
   std::string inputs;    ///< hash of all inputs of the row
   [[nodiscard]] bool failed() const { return verdict == "failed"; }
-  [[nodiscard]] bool adequate() const { return verdict == "adequate"; }
+  /// Returns whether the model as submitted is adequate. A model that is adequate only with refitted
+  /// parameters, and not fit for purpose as submitted, has wrong parameters.
+  [[nodiscard]] bool adequate() const { return verdict == "adequate" && error.fit != "no"; }
 };
 /// Returns the row of a plant that could not be diagnosed, with the reason `why`.
 FleetRow failed_row(const std::string& plant, const std::string& why);

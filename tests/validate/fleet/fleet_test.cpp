@@ -139,6 +139,10 @@ TEST(FleetTables, ReportFindingsAndExitCodes) {
   EXPECT_EQ(fleet_code(sound), 0);
   EXPECT_EQ(fleet_code(found), 3);
   EXPECT_EQ(fleet_code(broken()), 1);
+  std::vector<FleetRow> refitted = {row("a", "adequate"), row("b", "adequate")};
+  refitted.back().error.fit = "no";
+  EXPECT_EQ(fleet_code(refitted), 3);
+  EXPECT_EQ(nlohmann::json::parse(fleet_json({}, refitted))["adequate"], 1);
   const std::string text = fleet_text(broken());
   for (const char* words :
        {"SEXS 62 % or ESST1A 34 %", "Q, fault, e2.csv", "26 × → 1.0 ×", "≤ 3e-05", "c failed: no \"file\"",
@@ -218,7 +222,7 @@ TEST(FleetTables, WorstOfAHundredPlantsIsFirst) {
     const FleetRow &a = rows[k - 1], &b = rows[k];
     const auto key = [&](const FleetRow& r) {  // descending errors; unknown ones below 0
       const double unknown = -1;
-      return std::tuple(rank.at(r.adequate() && r.error.fit == "no" ? "refit" : r.verdict),
+      return std::tuple(rank.at(r.verdict == "adequate" && r.error.fit == "no" ? "refit" : r.verdict),
                         -(std::isnan(r.error.percent) ? unknown : r.error.percent),
                         -(std::isnan(r.left) ? unknown : r.left), r.plant);
     };
