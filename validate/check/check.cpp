@@ -389,8 +389,7 @@ class Check : Findings {
                        delay > 0 ? "after" : "before"),
            "they were stamped by different clocks or filters", "shift them so that their steps coincide");
     const StepFit as_is = fit_steps(r_, steps_, delay);
-    const Mistake* best = nullptr;
-    double least = 1;
+    std::vector<std::pair<const Mistake*, double>> explain;  // with the residual share
     for (const auto& m : mistakes()) {
       const record::Record alternative = reinterpreted(m.reinterpret);
       const std::vector<switching::StepInterval> there = switching::find_large_steps(alternative);
@@ -403,18 +402,38 @@ class Check : Findings {
       // The residual of sound records is below m.sound plus noise (tests/validate/check/sound_test.cpp).
       const bool sound =
           same.reactance > 0 && (same.residual < m.sound + 2 * noise || same.residual < 5 * fit.residual);
-      // If two mistakes explain the steps almost equally well, the first in the list is more common.
-      if (!sound && fit.residual < least / 2) best = &m, least = fit.residual;
+      if (!sound) explain.emplace_back(&m, fit.residual);
     }
+    // If two mistakes explain the steps almost equally well, the first in the list is more common.
+    const Mistake* best = nullptr;
+    double least = 1;
+    for (const auto& [mistake, residual] : explain)
+      if (residual < least / 2) best = mistake, least = residual;
     if (best && apart())
       warn("time_skew", "steps of V and of the current up to one sample apart",
            "one of the channels is delayed",
            "correct its time stamps, or let `swingbank diagnose` fit the skew (SKEW)");
     else if (best)
-      refuse(best->kind, "steps of voltage and current that are inconsistent with a machine", best->why,
-             best->remedy);
+      inconsistent(*best, explain, least);
     else if (fits(as_is))
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
+  }
+
+  /// Refuses the record because of its steps. `explain`: mistakes that explain them, with the residual share;
+  /// `least`: the share of the best one.
+  void inconsistent(const Mistake& best, const std::vector<std::pair<const Mistake*, double>>& explain,
+                    double least) {
+    const auto finding = [&](const Mistake& m) {
+      return Finding{
+          m.kind,
+          Severity::refuse,
+          {"steps of voltage and current that are inconsistent with a machine", r_.name, m.why, m.remedy}};
+    };
+    Finding refusal = finding(best);
+    refusal.explanations = {finding(best)};
+    for (const auto& [mistake, residual] : explain)
+      if (mistake != &best && residual < 2 * least) refusal.explanations.push_back(finding(*mistake));
+    add(std::move(refusal));
   }
 
   /// Returns whether the steps are consistent if each is extended by one sample interval before it, after it,

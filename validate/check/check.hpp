@@ -18,6 +18,9 @@ struct Finding {
   std::string kind;  ///< stable identifier: "too_short", "wrong_base", … (validate/check/README.md)
   Severity severity = Severity::refuse;  ///< refuse: the record allows no verdict
   Problem problem;                       ///< message to the user
+  /// Mistakes in the columns that explain inconsistent steps about equally well, the likeliest one first;
+  /// empty for other findings. Further records can decide between them (read_records()).
+  std::vector<Finding> explanations = {};
 };
 
 /// Facts of the plant that the checks use. Uncertain parameters are excluded: a wrong parameter must not

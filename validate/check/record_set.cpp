@@ -12,31 +12,47 @@ void add_all(const std::vector<Problem>& found, Problems& problems) {
   for (const Problem& p : found) problems.add(p.what, p.where, p.why, p.remedy);
 }
 
-void read_into(RecordSet& set, const std::string& file, const plant::PlantModel& model, Problems& problems,
-               const Preparing& prepare) {
+/// Reads and checks one file. Returns its findings.
+std::vector<Finding> read_into(RecordSet& set, const std::string& file, const plant::PlantModel& model,
+                               Problems& problems, const Preparing& prepare) {
   record::Record record = record::read_staged(file, model.record_base, model.reading);
   if (prepare && model.plant.machine.effect != nullptr) record = prepare(std::move(record));
   if (std::ranges::find(set.records, record.name, &record::Record::name) != set.records.end())
     problems.add("two records named " + record.name, file, "their results would overwrite each other",
                  "rename one of them");
-  std::vector<std::string> warnings = record.notes;
+  std::vector<Finding> findings;
   if (model.plant.machine.effect != nullptr && !playin::is_recorded(model.plant) && !record.breaker()) {
-    std::vector<Finding> findings = check_record(record, plant_facts(model));
+    findings = check_record(record, plant_facts(model));
     const auto says = [&](std::string_view kind) {
       return std::ranges::any_of(findings, [&](const Finding& f) { return f.kind == kind; });
     };
     if (std::ranges::none_of(findings, [](const Finding& f) { return f.severity == Severity::refuse; }))
       if (auto better = better_reading(record, model); better && !says(better->kind))
         findings.push_back(std::move(*better));
-    for (const auto& [kind, severity, problem] : findings) {
-      if (severity == Severity::refuse)
-        add_all({problem}, problems);
-      else
-        warnings.push_back(problem.sentence());
-    }
   }
+  set.warnings.push_back(record.notes);
   set.records.push_back(std::move(record));
-  set.warnings.push_back(std::move(warnings));
+  return findings;
+}
+
+/// Records of one source have the same mistake in their columns. If a mistake explains the steps of all
+/// records whose steps are inconsistent, it replaces the likeliest one of each record.
+void agree(std::vector<std::vector<Finding>>& findings) {
+  std::vector<Finding*> inconsistent;
+  for (auto& of_record : findings)
+    for (Finding& f : of_record)
+      if (!f.explanations.empty()) inconsistent.push_back(&f);
+  if (inconsistent.empty()) return;
+  const auto in = [](const Finding& f, const Finding& explanation) {
+    return std::ranges::find(f.explanations, explanation.problem.remedy,
+                             [](const Finding& e) { return e.problem.remedy; });
+  };
+  for (const Finding& explanation : std::vector(inconsistent.front()->explanations))
+    if (std::ranges::all_of(inconsistent,
+                            [&](Finding* f) { return in(*f, explanation) != f->explanations.end(); })) {
+      for (Finding* f : inconsistent) *f = Finding(*in(*f, explanation));
+      return;
+    }
 }
 
 }  // namespace
@@ -58,13 +74,22 @@ RecordSet read_records(const std::vector<std::string>& files, const plant::Plant
 RecordSet read_records(const std::vector<std::string>& files, const plant::PlantModel& model,
                        Problems& problems, const Preparing& prepare) {
   RecordSet set;
+  std::vector<std::vector<Finding>> findings;  // for each record of the set
   for (const std::string& file : files) {
     try {
-      read_into(set, file, model, problems, prepare);
+      findings.push_back(read_into(set, file, model, problems, prepare));
     } catch (const InputError& error) {
       add_all(error.problems(), problems);
     }
   }
+  agree(findings);
+  for (std::size_t k = 0; k < findings.size(); ++k)
+    for (const Finding& f : findings[k]) {
+      if (f.severity == Severity::refuse)
+        add_all({f.problem}, problems);
+      else
+        set.warnings[k].push_back(f.problem.sentence());
+    }
   return set;
 }
 

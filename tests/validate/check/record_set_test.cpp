@@ -41,6 +41,24 @@ TEST_F(RecordSets, AppendToKnownProblems) {
   EXPECT_EQ(set.records.size(), 1U);
   EXPECT_THROW(problems.raise(), InputError);
 }
+/// The steps of avr_ev2 alone would suggest that P is reversed too.
+TEST_F(RecordSets, HaveTheMistakeThatExplainsAllOfThem) {
+  const auto reversed = [](record::Record r) {
+    for (double& q : r.Q) q = -q;
+    return r;
+  };
+  const auto remedies = [&](const std::vector<std::string>& files) {
+    Problems problems;
+    read_records(files, model, problems, reversed);
+    std::vector<std::string> all;
+    for (const Problem& p : problems.list()) all.push_back(p.remedy);
+    return all;
+  };
+  EXPECT_THAT(remedies({kSecond}), ::testing::ElementsAre("change the sign of P and Q"));
+  EXPECT_THAT(remedies({kFirst}), ::testing::ElementsAre("change the sign of Q"));
+  for (const auto& files : {std::vector{kFirst, kSecond}, {kSecond, kFirst}})
+    EXPECT_THAT(remedies(files), ::testing::Each("change the sign of Q"));
+}
 TEST_F(RecordSets, SkipTheCheckWithoutAModel) {
   Problems problems;
   EXPECT_EQ(read_records({kFirst}, plant::PlantModel{}, problems).records.size(), 1U);

@@ -14,10 +14,11 @@ class Findings {
  public:
   explicit Findings(std::string record) : record_(std::move(record)) {}
 
+  void add(Finding finding) {
+    if (!found(finding.kind)) all_.push_back(std::move(finding));
+  }
   void add(std::string kind, Severity severity, std::string what, std::string why, std::string remedy) {
-    if (found(kind)) return;
-    all_.push_back(
-        {std::move(kind), severity, {std::move(what), record_, std::move(why), std::move(remedy)}});
+    add({std::move(kind), severity, {std::move(what), record_, std::move(why), std::move(remedy)}});
   }
   void refuse(std::string kind, std::string what, std::string why, std::string remedy) {
     add(std::move(kind), Severity::refuse, std::move(what), std::move(why), std::move(remedy));
