@@ -11,6 +11,7 @@
 #include "jobs/event_records.hpp"
 #include "jobs/verdict.hpp"
 #include "validate/benchmark/generated_input.hpp"
+#include "validate/benchmark/grid_response.hpp"
 #include "validate/benchmark/report.hpp"
 #include "validate/plant/load_with_user_models.hpp"
 #include "validate/thresholds/adequacy.hpp"
@@ -46,9 +47,10 @@ std::string named(const plant::PlantModel& model) {
   return fmt::format("{} ({})", model.name, std::filesystem::path(model.origin).filename().string());
 }
 
-/// Returns the record of each test, read or generated.
+/// Returns the record of each test: read, generated, or the response of the reference model behind a grid.
 std::vector<record::Record> read_inputs(const benchmark::TestSet& set, plant::PlantModel& model,
-                                        const Arguments& a, Problems& problems) {
+                                        const plant::PlantModel* against, const Arguments& a,
+                                        Problems& problems) {
   std::vector<std::string> files;
   for (const auto& t : set.tests)
     if (!t.record.empty() && std::ranges::count(files, t.record.string()) == 0)
@@ -72,8 +74,9 @@ std::vector<record::Record> read_inputs(const benchmark::TestSet& set, plant::Pl
   }
   std::vector<record::Record> records;
   for (const auto& t : set.tests)
-    records.push_back(t.record.empty() ? benchmark::generated_input(t, *set.initial, model)
-                                       : read.records[places.at(t.record.string())]);
+    records.push_back(t.behind_impedance() ? benchmark::grid_response(t, *set.initial, model, *against)
+                      : t.record.empty()   ? benchmark::generated_input(t, *set.initial, model)
+                                           : read.records[places.at(t.record.string())]);
   return records;
 }
 
@@ -102,7 +105,8 @@ int run(Arguments& a) {
   benchmark::check_controls(set, model, problems);
   if (against && a.against != a.model) benchmark::check_controls(set, *against, problems);
   problems.raise();
-  const std::vector<record::Record> records = read_inputs(set, model, a, problems);
+  const std::vector<record::Record> records =
+      read_inputs(set, model, against ? &*against : nullptr, a, problems);
   std::vector<std::string> names = {kPage, kResult, kTable};
   for (const auto& t : set.tests) names.push_back(curves_name(t));
   interruption_point();
@@ -110,6 +114,7 @@ int run(Arguments& a) {
   const auto tested = benchmark::run_benchmark(set.tests, {.model = model,
                                                            .against = against ? &*against : nullptr,
                                                            .records = records,
+                                                           .initial = set.initial,
                                                            .by = a.judging.by,
                                                            .progress = jobs::progress_line()});
   catch_stop_signals();
@@ -147,8 +152,8 @@ void declare(jobs::CommandLine& line, Arguments& a) {
       "named after its test");
   line.add(
       "--against", a.against,
-      "plant file of another model, whose response is the reference: to the voltage of the records, or to a "
-      "generated input");
+      "plant file of another model, whose response is the reference: to the voltage of the records, to a "
+      "generated input, or behind the impedance of a grid (scr)");
   a.reading.add_columns(line);
   line.add("--user-model", a.user_model_files,
            "file (.toml) of a user-defined model that a plant may use; may be repeated")

@@ -170,6 +170,27 @@ assert abs(moved[0] - 0.1) < 1e-6 and abs(moved[-1] - 0.2) < 5e-3, (moved[0], mo
 assert step["passes"] is True
 PYTHON
 
+# the same plants behind the impedance of a grid: the terminal voltage depends on the model
+code=0
+"$swingbank" benchmark --model other_gain.toml --against converter.toml --out weak --quiet --json \
+  --tests "$SWINGBANK_SOURCE/configs/benchmark/weak_grid.toml" >weak.json || code=$?
+/usr/bin/python3 - $code <<'PYTHON'
+import json, sys
+report = json.load(open("weak.json"))
+assert int(sys.argv[1]) == (0 if report["passes"] else 3), (sys.argv, report["sentence"])
+for test in report["tests"]:
+    assert test["scr"] > 0 and test["x_over_r"] == 10
+    errors = {r["channel"]: r["percent"]["mxe"] for r in test["errors"] if r["window"] == "post"}
+    assert list(errors) == ["P", "Q", "V", "Ip", "Iq"], (test["name"], errors)
+    # Kqv acts only where the voltage leaves its deadband, thus in the dips
+    assert (errors["V"] > 1e-3) == (test["kind"] == "voltage_dip"), (test["name"], errors)
+PYTHON
+code=0
+"$swingbank" benchmark --model converter.toml --tests "$SWINGBANK_SOURCE/configs/benchmark/weak_grid.toml" --out none \
+  2>said || code=$?
+((code == 1)) || fail "exit code $code of a weak grid without record and reference"
+grep -q "no record for test 'scr_10_to_5'" said || fail "not refused: $(cat said)"
+
 # bad input: every problem at once, and no file
 out=none
 refused() { "$swingbank" benchmark --out "$out" "$@"; }

@@ -9,6 +9,7 @@
 
 #include "base/in_parallel.hpp"
 #include "base/stop_signal.hpp"
+#include "validate/benchmark/grid_response.hpp"
 #include "validate/event/event.hpp"
 #include "validate/playin/component.hpp"
 #include "validate/playin/play_in.hpp"
@@ -105,26 +106,39 @@ compare::ChannelComparison channel_of(const compare::ChannelRule& rule, const st
 
 /// Returns the active or reactive current, P/V or Q/V [pu of the plant's MVA]. `power`: P or Q [pu of the
 /// record's base]; `per_machine`: the plant's MVA over the record's base.
-std::vector<double> current_of(const std::vector<double>& power, const Record& r, double per_machine) {
+std::vector<double> current_of(const std::vector<double>& power, const std::vector<double>& V,
+                               double per_machine) {
   std::vector<double> current(power.size());
-  for (std::size_t k = 0; k < power.size(); ++k) current[k] = power[k] / per_machine / r.V[k];
+  for (std::size_t k = 0; k < power.size(); ++k) current[k] = power[k] / per_machine / V[k];
   return current;
 }
 
 /// Adds the active and reactive current of a converter, because grid codes judge them during a fault. They
 /// have no limits here. Adds nothing if the voltage of a compared sample is zero.
 void add_currents(compare::EventComparison& e, double per_machine) {
+  const std::vector<double>& modelled = e.playback.V.empty() ? e.record.V : e.playback.V;
   for (std::size_t k = 0; k < e.record.t.size(); ++k)
-    if (!e.left_out[k] && !(e.record.V[k] > 0)) return;
+    if (!e.left_out[k] && !(e.record.V[k] > 0 && modelled[k] > 0)) return;
   const std::size_t powers = e.channels.size();
   for (std::size_t c = 0; c < powers; ++c) {
     const std::string name = e.channels[c].name;
     if (name != "P" && name != "Q") continue;
     e.channels.push_back(channel_of(
         {.name = name == "P" ? "Ip" : "Iq", .unit = "pu", .scale = 1, .floor = 0, .starts_at_mean = false},
-        current_of(e.channels[c].measured, e.record, per_machine),
-        current_of(e.channels[c].modelled, e.record, per_machine), e));
+        current_of(e.channels[c].measured, e.record.V, per_machine),
+        current_of(e.channels[c].modelled, modelled, per_machine), e));
   }
+}
+
+/// Simulates the model behind the grid of the test, over the windows of its record.
+playin::Playback behind_grid(const Test& t, const BenchmarkInputs& in, const Record& r) {
+  Record response =
+      record::stretch(grid_response(t, *in.initial, in.model, in.model), r.t.front(), r.t.back());
+  playin::Playback p;
+  p.P = std::move(response.P);
+  p.Q = std::move(response.Q);
+  p.V = std::move(response.V);
+  return p;
 }
 
 TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& given) {
@@ -134,6 +148,7 @@ TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& give
   const double mva = in.model.plant.mva, per_machine = mva / e.record.base.mva;
   e.windows = windows_of(t, e.record);
   e.left_out = outside_windows(e.record, e.windows);
+  const bool behind = t.behind_impedance();
   const plant::PlantModel& reference = in.against ? *in.against : in.model;
   const event::FitEvent prepared =
       event::prepare_events(reference, {e.record}, {.step_shape = switching::StepShape::sharp}).front();
@@ -143,9 +158,9 @@ TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& give
     return playin::play_in(of.under_test(), prepared.record, curve);
   };
   playin::Playback other;
-  if (in.against) other = response(*in.against);
+  if (in.against && !behind) other = response(*in.against);
   try {
-    e.playback = response(in.model);
+    e.playback = behind ? behind_grid(t, in, e.record) : response(in.model);
   } catch (const InputError& error) {
     result.failure = error.problems().front().sentence();
     result.fitness = compare::not_judged(in.by, mva, result.failure);
@@ -154,9 +169,14 @@ TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& give
   const auto outputs = in.against ? std::vector{playin::Output::P, playin::Output::Q}
                                   : playin::compared_outputs(e.record, true);
   for (const playin::Output o : outputs)
-    e.channels.push_back(channel_of(rule_of(o, e.record.base, per_machine),
-                                    in.against ? output_of(other, o) : playin::measured_values(e.record, o),
-                                    output_of(e.playback, o), e));
+    e.channels.push_back(
+        channel_of(rule_of(o, e.record.base, per_machine),
+                   in.against && !behind ? output_of(other, o) : playin::measured_values(e.record, o),
+                   output_of(e.playback, o), e));
+  if (behind)
+    e.channels.push_back(
+        channel_of({.name = "V", .unit = "pu", .scale = 1, .floor = 0, .starts_at_mean = false}, e.record.V,
+                   e.playback.V, e));
   if (in.model.plant.machine.effect->converter) add_currents(e, per_machine);
   for (const auto& c : e.channels)
     for (const Phase phase : thresholds::kPhases)

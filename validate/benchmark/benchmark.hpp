@@ -23,9 +23,11 @@ struct TestResult {
 struct BenchmarkInputs {
   const plant::PlantModel& model;              ///< model under test
   const plant::PlantModel* against = nullptr;  ///< reference model; null: the records are the reference
-  const std::vector<record::Record>& records;  ///< one for each test, recorded or generated_input()
-  thresholds::Acceptance by;                   ///< limits
-  event::Progress progress = {};               ///< called after each test
+  /// One for each test: recorded, generated_input(), or grid_response() of the reference model.
+  const std::vector<record::Record>& records;
+  std::optional<InitialPoint> initial = {};  ///< operating point of the tests with grid_response()
+  thresholds::Acceptance by;                 ///< limits
+  event::Progress progress = {};             ///< called after each test
 };
 
 /// Returns whether the channel has limits.
@@ -36,9 +38,10 @@ std::string_view window_name(thresholds::Phase phase);
 /// Plays voltage and angle of each test's record into the model, and reference steps into its controls.
 /// Computes the errors of the response in the windows pre, during and post. The times of the event are known
 /// and exact; the operating point is the mean before the event. If the angle was integrated from a frequency,
-/// its phase jumps at the event are fitted to P and Q. If the simulation of the model fails, the test fails
-/// and TestResult::failure contains the reason. Throws InputError if a record does not contain a test's
-/// windows, or if the simulation of the reference model fails.
+/// its phase jumps at the event are fitted to P and Q. In a test behind a grid impedance, the model is
+/// simulated behind the same impedance, and its terminal voltage is compared too. If the simulation of the
+/// model fails, the test fails and TestResult::failure contains the reason. Throws InputError if a record
+/// does not contain a test's windows, or if the simulation of the reference model fails.
 std::vector<TestResult> run_benchmark(const std::vector<Test>& tests, const BenchmarkInputs& inputs);
 
 /// Whether the model passes all tests.

@@ -39,7 +39,10 @@ NearestLimit nearest_limit(const TestResult& r) {
 std::string times_text(const Test& t) {
   std::string text = fmt::format("{:g} s", t.event);
   if (t.end) text += fmt::format(" to {:g} s", *t.end);
+  if (t.kind == TestKind::scr_step && t.grid)
+    return text + fmt::format(", SCR {:g} to {:g}", t.grid->scr, t.grid->scr + t.size.value_or(0));
   if (t.size) text += fmt::format(", {:+g} {}", *t.size, size_unit(t.kind));
+  if (t.grid) text += fmt::format(", SCR {:g}", t.grid->scr);
   return text;
 }
 
@@ -93,6 +96,8 @@ nlohmann::json test_json(const TestResult& r) {
                       {"end_s", t.end ? nlohmann::json(*t.end) : nullptr},
                       {"size", t.size ? nlohmann::json(*t.size) : nullptr},
                       {"size_unit", size_unit(t.kind)},
+                      {"scr", t.grid ? nlohmann::json(t.grid->scr) : nullptr},
+                      {"x_over_r", t.grid ? nlohmann::json(t.grid->x_over_r) : nullptr},
                       {"windows", nlohmann::json::array()},
                       {"errors", nlohmann::json::array()},
                       {"movement", nlohmann::json::array()}};
@@ -152,7 +157,7 @@ void large_charts(report::Document& page, const TestResult& r, const std::string
   page.add(report::End{});
 }
 
-/// Adds the charts of one test: V and f as played in, then each channel.
+/// Adds the charts of one test: V and f, if they were played in, then each channel.
 void charts(report::Document& page, const TestResult& r, const std::string& reference) {
   const compare::EventComparison& e = r.event;
   const double nominal = e.record.base.frequency;
@@ -162,9 +167,11 @@ void charts(report::Document& page, const TestResult& r, const std::string& refe
     c.series.push_back({reference, report::Ink::measured, std::move(y)});
     page.add(thinned(std::move(c)));
   };
-  input("V", "pu", e.record.V);
-  input("f", "Hz",
-        compare::scaled(compare::frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
+  if (!r.test.behind_impedance()) {
+    input("V", "pu", e.record.V);
+    input("f", "Hz",
+          compare::scaled(compare::frequency_of(e.record.t, e.record.theta, nominal), nominal, nominal));
+  }
   for (const auto& channel : e.channels) page.add(channel_chart(r, channel, reference));
   page.add(report::End{});
 }
@@ -308,7 +315,8 @@ std::string html_report(const std::vector<TestResult>& results, const ReportCont
   }
   page.section("Curves");
   page.add(report::Paragraph{
-      "Voltage and angle of the reference are played into the model. Drag across a chart to "
+      "Voltage and angle of the reference are played into the model, except in tests behind the impedance of a "
+      "grid (SCR), where both models are simulated. Drag across a chart to "
       "zoom (all charts of a test follow); double-click to see all of it. The grey band is the "
       "event. Curves of long records show at most 5000 samples; errors use all samples.",
       report::Paragraph::Kind::hint});

@@ -29,13 +29,14 @@ constexpr std::array<KindRecord, kTestKinds> kKinds = {{{"voltage_dip", "pu", 1,
                                                         {"frequency_step", "Hz", 10, 0, false},
                                                         {"frequency_ramp", "Hz/s", 10, 0, true},
                                                         {"phase_step", "deg", 180, 0, false},
+                                                        {"scr_step", "-", 100, -1, false},
                                                         {"v_reference_step", "pu", 1, 0, false},
                                                         {"q_reference_step", "pu", 2, 0, false},
                                                         {"p_reference_step", "pu", 2, 0, false}}};
 const KindRecord& record_of(TestKind kind) { return kKinds.at(static_cast<std::size_t>(kind)); }
 
-constexpr std::array<std::string_view, 9> kKeys = {"name", "kind", "record", "event", "end",
-                                                   "size", "pre",  "during", "post"};
+constexpr std::array<std::string_view, 11> kKeys = {"name", "kind",     "record", "event",  "end", "size",
+                                                    "scr",  "x_over_r", "pre",    "during", "post"};
 constexpr double kLatest = 1e5;         ///< largest absolute time [s]
 constexpr double kMostGenerated = 1e6;  ///< largest number of samples of a generated input
 
@@ -53,7 +54,9 @@ void check_size(Config& c, const std::string& at, const Test& t) {
   const KindRecord& kind = record_of(t.kind);
   if (t.size && *t.size * kind.sign < 0)
     c.problem(at + "size", fmt::format("size = {:g} {}", *t.size, kind.unit),
-              kind.sign < 0 ? "the voltage falls in a dip" : "the voltage rises in a swell",
+              t.kind == TestKind::scr_step ? "the short-circuit ratio falls when a line opens"
+              : kind.sign < 0              ? "the voltage falls in a dip"
+                                           : "the voltage rises in a swell",
               fmt::format("give the change with its sign, such as {:g}", -*t.size));
   if (!t.size && is_reference_step(t.kind))
     c.problem(at + "size", "no size", "a record does not contain the size of a reference step",
@@ -80,6 +83,29 @@ void check_times(Config& c, const std::string& at, const Test& t) {
   outside("pre", t.pre, -kLatest, t.event);
   outside("during", t.during, t.event, t.last());
   outside("post", t.post, t.last(), kLatest);
+}
+
+/// Reads the grid of a test, and checks it against its kind.
+void read_grid(Config& c, const std::string& at, Test& t) {
+  const char *const ratio = "scr", *const angle = "x_over_r";
+  const bool step = t.kind == TestKind::scr_step;
+  if (!step && !c.has(at + ratio) && !c.has(at + angle)) return;
+  if (!step && t.kind != TestKind::voltage_dip && !is_reference_step(t.kind))
+    c.problem(at + ratio, fmt::format("short-circuit ratio of a {}", kind_name(t.kind)),
+              "behind the impedance of a grid only voltage_dip, scr_step and reference steps are defined",
+              "leave out scr and x_over_r: the disturbance is then that of an ideal source at the terminal");
+  WeakGrid grid;
+  grid.scr = c.require<double>(
+      at + ratio, {0.1, 1000, "-", "short-circuit power of the grid before the event, over the plant's MVA"});
+  grid.x_over_r = c.require<double>(at + angle, {0.1, 1000, "-", "X/R of the grid's impedance"});
+  if (step && t.size && c.has(at + ratio) && !(grid.scr + *t.size > 0))
+    c.problem(at + "size", fmt::format("size = {:g} with scr = {:g}", *t.size, grid.scr),
+              "scr + size is the short-circuit ratio after the event, which must be above 0",
+              "give a smaller step");
+  if (t.kind == TestKind::voltage_dip && t.size == 0.0)
+    c.problem(at + "size", "size = 0 with scr", "the fault that causes the dip has no finite impedance",
+              "give a negative change of the voltage in pu");
+  t.grid = grid;
 }
 
 Test read_test(Config& c, int index) {
@@ -113,6 +139,7 @@ Test read_test(Config& c, int index) {
   plant::refuse_unknown_keys(c, fmt::format("test[{}]", index), "[[test]]", {kKeys.begin(), kKeys.end()});
   check_times(c, at, t);
   check_size(c, at, t);
+  read_grid(c, at, t);
   return t;
 }
 

@@ -20,17 +20,24 @@ enum class TestKind {
   frequency_step,
   frequency_ramp,
   phase_step,
+  scr_step,
   v_reference_step,
   q_reference_step,
   p_reference_step,
 };
-constexpr int kTestKinds = 9;               ///< number of kinds
+constexpr int kTestKinds = 10;              ///< number of kinds
 std::string_view kind_name(TestKind kind);  ///< "voltage_dip"
-std::string_view size_unit(TestKind kind);  ///< unit of Test::size: "pu", "Hz", "Hz/s", "deg"
+std::string_view size_unit(TestKind kind);  ///< unit of Test::size: "pu", "Hz", "Hz/s", "deg", "-"
 bool is_reference_step(TestKind kind);      ///< whether a reference of the plant is stepped
 
 /// Time interval [s of the record].
 using Interval = std::pair<double, double>;
+
+/// Grid behind which a plant is tested.
+struct WeakGrid {
+  double scr = 0;       ///< short-circuit ratio: short-circuit power of the grid over the plant's MVA, > 0
+  double x_over_r = 0;  ///< X/R of its impedance, > 0
+};
 
 /// One test.
 struct Test {
@@ -41,8 +48,11 @@ struct Test {
   std::optional<double> size = {};              ///< change [size_unit()]; powers in pu of the plant's MVA
   std::optional<Interval> pre = {}, post = {};  ///< windows; empty: the record before and after the event
   std::optional<Interval> during = {};          ///< window; empty: from `event` to `end`, if there is an end
+  std::optional<WeakGrid> grid = {};            ///< grid before the event; none: ideal source at the terminal
   std::filesystem::path record = {};            ///< file of the record; empty: see find_records()
   std::string where;                            ///< place in the file, "tests.toml:12:1"
+  /// Returns whether grid_response() simulates the test; otherwise a voltage is played in.
+  [[nodiscard]] bool behind_impedance() const { return grid && record.empty(); }
   /// Returns the end of the disturbance, or its beginning if it is permanent [s].
   [[nodiscard]] double last() const { return end.value_or(event); }
 };

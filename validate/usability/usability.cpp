@@ -8,21 +8,13 @@
 #include "base/in_parallel.hpp"
 #include "base/json.hpp"
 #include "sim/reference/reference.hpp"
+#include "validate/plant/infinite_bus.hpp"
 
 namespace swingbank::validate::usability {
 namespace {
 
 using sim::plant::Plant;
 namespace network = sim::network;
-
-/// Returns the plant without the parts that belong to an event: instruments and reference changes.
-Plant plant_for_studies(Plant plant) {
-  plant.measurements.clear();
-  std::erase_if(plant.controls, [](const sim::plant::Block& b) {
-    return b.effect->slot == sim::Slot::setpoint && b.effect->dyr_name.empty();
-  });
-  return plant;
-}
 
 /// Returns the control with the voltage reference; null: none.
 const sim::Effect* regulator_of(const Plant& plant) {
@@ -32,55 +24,12 @@ const sim::Effect* regulator_of(const Plant& plant) {
   return nullptr;
 }
 
-/// Returns a grid with the plant at bus 0 and the infinite bus at bus 1. Half the reactance is that of a line
-/// and half that of the source, so that neither is near zero.
-sim::grid::Grid grid_of(const plant::PlantModel& model, const Plant& plant, const OperatingState& at) {
-  sim::grid::Grid grid;
-  grid.library = model.library;
-  grid.conventions = model.conventions;
-  network::Network& net = grid.network;
-  net.title = net.origin = model.name;
-  net.base_mva = plant.mva;
-  net.frequency = model.conventions.frequency;
-  const Complex power = Complex(at.P, at.Q) / plant.mva, current = std::conj(power / at.voltage);
-  const Complex far = at.voltage - Complex(0, kStudyReactance / 2) * current;
-  const auto bus = [&](int number, const char* name, network::BusType type, Complex v) {
-    net.buses.push_back({number, name, 1.0, type, std::abs(v), std::arg(v)});
-    grid.flow.voltage.push_back(v);
-  };
-  bus(1, "PLANT", network::BusType::generator, at.voltage);
-  bus(2, "INFINITE", network::BusType::slack, far);
-  network::Branch line{};
-  line.from = 0;
-  line.to = 1;
-  line.circuit = "1";
-  line.x = kStudyReactance / 2;
-  net.branches = {line};
-  const auto generator = [&](int at_bus, Complex s, Plant unit) {
-    network::Generator g{};
-    g.bus = at_bus;
-    g.id = "1";
-    g.p = s.real();
-    g.q = s.imag();
-    g.vset = std::abs(grid.flow.voltage[static_cast<std::size_t>(at_bus)]);
-    g.mva = plant.mva;
-    g.in_service = true;
-    net.generators.push_back(g);
-    grid.flow.generation.push_back(s);
-    unit.bus = at_bus;
-    unit.generator = at_bus;
-    unit.generation = s;
-    unit.mva = plant.mva;
-    grid.plants.push_back(std::move(unit));
-  };
-  generator(0, power, plant);
-  grid.plants.front().name = model.name;
-  Plant infinite;
-  infinite.name = "infinite bus";
-  infinite.machine.effect = grid.library.find("GENCLS");
-  infinite.machine.p = {0, 0, 0, kStudyReactance / 2};  // H = 0: angle and speed are constant
-  generator(1, far * std::conj(-current), std::move(infinite));
-  return grid;
+/// Returns the plant at an infinite bus. Half the reactance is that of a line and half that of the source, so
+/// that neither is near zero.
+sim::grid::Grid grid_of(const plant::PlantModel& model, const OperatingState& at) {
+  return plant::infinite_bus_grid(
+      model, at.voltage, Complex(at.P, at.Q) / model.plant.mva,
+      {.source = kStudyReactance / 2, .lines = {Complex(0, kStudyReactance / 2)}});
 }
 
 /// Returns the step at t = 0. A reactor at the plant's bus multiplies voltage and reactance of the Thévenin
@@ -134,10 +83,10 @@ Deviation simulate(const sim::grid::Grid& grid, const network::Event& event) {
   return d;
 }
 
-UsabilityAt check_at(const plant::PlantModel& model, const Plant& plant, const OperatingState& state) {
+UsabilityAt check_at(const plant::PlantModel& model, const OperatingState& state) {
   UsabilityAt at;
   at.state = state;
-  const sim::grid::Grid grid = grid_of(model, plant, state);
+  const sim::grid::Grid grid = grid_of(model, state);
   try {
     sim::plant::operating_point(grid.plants.front(), state.voltage, grid.network.base_mva, grid.conventions);
     at.initialises = true;
@@ -149,7 +98,7 @@ UsabilityAt check_at(const plant::PlantModel& model, const Plant& plant, const O
     }
     at.drift_P = 100 * still.largest(0);
     at.drift_Q = 100 * still.largest(1);
-    const Deviation moved = simulate(grid, step_of(plant, state.voltage));
+    const Deviation moved = simulate(grid, step_of(model.plant, state.voltage));
     at.oscillation = least_damped_oscillation(moved.of, kStudyRate, kSampleError);
     at.damped = moved.stable && moved.decays();
     if (auto& o = at.oscillation) {
@@ -197,8 +146,7 @@ Usability check_usability(const plant::PlantModel& model, const std::vector<Oper
            at != states.end())
     all.not_checked = at->event + " has no voltage before the event";
   if (!all.not_checked.empty()) return all;
-  const Plant plant = plant_for_studies(model.plant);
-  const sim::Effect* regulator = regulator_of(plant);
+  const sim::Effect* regulator = regulator_of(model.plant);
   all.step =
       regulator
           ? fmt::format("step of the reference of {} by {:+g} pu", regulator->name, kStudyStep)
@@ -207,7 +155,7 @@ Usability check_usability(const plant::PlantModel& model, const std::vector<Oper
                 100 * kStudyStep);
   all.at.resize(states.size());
   in_parallel(
-      states.size(), [&](std::size_t k) { all.at[k] = check_at(model, plant, states[k]); }, [](int) {});
+      states.size(), [&](std::size_t k) { all.at[k] = check_at(model, states[k]); }, [](int) {});
   return all;
 }
 
