@@ -3,6 +3,7 @@
 #   swingbank-train     programs of datasets and networks, with MPI and LibTorch
 #   libswingbank-dev    library and headers
 #   python3-swingbank   Python package
+#   swingbank-x86-64-v3, swingbank-x86-64-v4    commands of swingbank for wider instruction sets, if they were built
 # debian_files.cmake writes the files that only a package has. debian_size.cmake corrects the size that CPack states.
 # dpkg-shlibdeps finds the packages of the shared libraries.
 set(CPACK_GENERATOR DEB)
@@ -40,6 +41,21 @@ component that the model lacks.
 set(CPACK_COMPONENTS_ALL)
 swingbank_package(swingbank swingbank "power-plant model validation" "${about}
 This package contains the commands and the example configs.")
+
+set(CPACK_DEBIAN_SWINGBANK_PACKAGE_SUGGESTS "swingbank-x86-64-v3, swingbank-x86-64-v4")
+
+# debian_levels.cmake adds the components whose programs were built when cpack runs.
+set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/debian_levels.cmake)
+set(CPACK_SWINGBANK_PROGRAMS ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
+foreach(level_of "v3;AVX2" "v4;AVX-512")
+  list(GET level_of 0 level)
+  list(GET level_of 1 instructions)
+  swingbank_package(${level} swingbank-x86-64-${level} "power-plant model validation with ${instructions}" "${about}
+This package contains the commands for processors with ${instructions}. The
+command swingbank selects the commands for the processor.")
+  string(TOUPPER ${level} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS ${same})
+endforeach()
 
 swingbank_package(train swingbank-train "datasets and networks for power-plant model validation" "${about}
 This package contains the commands that simulate datasets, with MPI, and

@@ -1,6 +1,6 @@
 # cmake --install <build folder> [--prefix <folder>]: programs, example configs, documents, man pages and completion, and
-# the library (export.cmake). Components: train (programs of datasets and networks), development, python, and swingbank
-# (everything else). The installation builds nothing. It first generates files with the programs (--help, schema), so
+# the library (export.cmake). Components: train (programs of datasets and networks), development, python, v3 and v4
+# (programs for these instruction sets), and swingbank (everything else). The installation builds nothing. It first generates files with the programs (--help, schema), so
 # that nothing is installed if that fails.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME swingbank)
 # The programs are in a separate folder, because bin must not have subfolders (instruction sets).
@@ -32,15 +32,20 @@ endif()" COMPONENT ${component})
     install(FILES ${made}/man1/${name}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component} OPTIONAL)
   endforeach()
   # The same programs for wider instruction sets, if jobs/setup.sh --any-processor has built them. The dispatcher
-  # selects the programs for the processor.
-  install(CODE "foreach(level x86-64-v3 x86-64-v4)
-  foreach(name ${names})
-    if(EXISTS \"$<TARGET_FILE_DIR:swingbank>/\${level}/\${name}\")
-      file(INSTALL \"$<TARGET_FILE_DIR:swingbank>/\${level}/\${name}\"
-        DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${programs_folder}/\${level}\" USE_SOURCE_PERMISSIONS)
+  # selects the programs for the processor. Those of the component swingbank are components of their own, because each
+  # is as large as the rest of the package.
+  foreach(level x86-64-v3 x86-64-v4)
+    set(of ${component})
+    if(component STREQUAL "swingbank")
+      string(REPLACE x86-64- "" of ${level})
     endif()
+    install(CODE "foreach(name ${names})
+  if(EXISTS \"$<TARGET_FILE_DIR:swingbank>/${level}/\${name}\")
+    file(INSTALL \"$<TARGET_FILE_DIR:swingbank>/${level}/\${name}\"
+      DESTINATION \"\${CMAKE_INSTALL_PREFIX}/${programs_folder}/${level}\" USE_SOURCE_PERMISSIONS)
+  endif()
+endforeach()" COMPONENT ${of})
   endforeach()
-endforeach()" COMPONENT ${component})
 endfunction()
 swingbank_install_programs(swingbank)
 swingbank_install_programs(train)

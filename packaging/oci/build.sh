@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Builds the OCI image of Swingbank with buildah from the Debian packages of `cpack -G DEB`.
 #   bash packaging/oci/build.sh PACKAGES [--train] [--name NAME] [--base IMAGE | --bootstrap]
-# PACKAGES is the folder of the .deb files. --train also installs swingbank-train (MPI, LibTorch). --base names another
-# base image. --bootstrap creates the base image with mmdebstrap from this machine's Debian mirror, without a registry;
-# it needs root. On a machine that cannot start containers, set BUILDAH_ISOLATION=chroot.
+# PACKAGES is the folder of the .deb files. The packages of swingbank for wider instruction sets are installed if they
+# exist. --train also installs swingbank-train (MPI, LibTorch). --base names another base image. --bootstrap creates the
+# base image with mmdebstrap from this machine's Debian mirror, without a registry; it needs root. On a machine that
+# cannot start containers, set BUILDAH_ISOLATION=chroot.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 usage="bash packaging/oci/build.sh PACKAGES [--train] [--name NAME] [--base IMAGE | --bootstrap]"
@@ -31,6 +32,9 @@ while (($#)); do
 done
 [[ -n $folder ]] || stop "no folder at PACKAGES (the image is made of .deb files): $usage"
 [[ -z $base || -z $bootstrap ]] || stop "two bases at --bootstrap (--base names one too): $usage"
+for level in v3 v4; do
+  if compgen -G "$folder/swingbank-x86-64-${level}_*.deb" >/dev/null; then packages+=" swingbank-x86-64-$level"; fi
+done
 for package in $packages; do
   mapfile -t found < <(compgen -G "$folder/${package}_*.deb" || true)
   ((${#found[@]} == 1)) || stop "${#found[@]} files ${package}_*.deb at $folder (one is needed):" \

@@ -9,6 +9,9 @@ cd "$work/packages"
 
 wanted=(libswingbank-dev swingbank swingbank-train)
 if [[ -d $SWINGBANK_BIN/../python/swingbank ]]; then wanted+=(python3-swingbank); fi
+for level in "$SWINGBANK_BIN"/x86-64-v?; do
+  if [[ -d $level ]]; then wanted+=("swingbank-${level##*/}"); fi
+done
 cmp <(for one in *.deb; do dpkg-deb -f "$one" Package; done | sort) <(printf '%s\n' "${wanted[@]}" | sort) || fail "packages: $(ls)"
 # The static libraries take lintian as long as all else: they are checked nightly.
 for package in "${wanted[@]:1}"; do check "$package"_*.deb; done

@@ -13,15 +13,12 @@ for section in post environment test runscript; do
   if command -v shellcheck >/dev/null; then shellcheck -s sh -S warning "$work/$section.sh" || fail "%$section"; fi
 done
 grep -q '^From: debian:12$' "$folder/swingbank.def" || fail "not Debian 12"
-# every file is a package of cmake/debian.cmake in the build folder of a preset
+# the files are the packages of programs in the build folder of a preset
 section_of files >"$work/files"
-(($(wc -l <"$work/files") == 2)) || fail "%files: $(cat "$work/files")"
-while read -r file target; do
-  [[ $file =~ ^build/([a-z]+)/([a-z-]+)_\*\.deb$ && $target == /packages/ ]] || fail "%files: $file $target"
-  preset=${BASH_REMATCH[1]} package=${BASH_REMATCH[2]}
-  grep -q "\"name\": \"$preset\"" "$SWINGBANK_SOURCE/CMakePresets.json" || fail "no preset $preset"
-  grep -q "^swingbank_package([a-z]* $package " "$SWINGBANK_SOURCE/cmake/debian.cmake" || fail "no package $package"
-done <"$work/files"
+read -r file target <"$work/files"
+[[ $(wc -l <"$work/files") == 1 && $file =~ ^build/([a-z]+)/swingbank\*_\*\.deb$ && $target == /packages/ ]] ||
+  fail "%files: $(cat "$work/files")"
+grep -q "\"name\": \"${BASH_REMATCH[1]}\"" "$SWINGBANK_SOURCE/CMakePresets.json" || fail "no preset ${BASH_REMATCH[1]}"
 [[ $("$swingbank" effects) == *GENROU* ]] || fail "%test would fail"
 echo "ok: Apptainer definition"
 
