@@ -38,7 +38,7 @@ struct EngineOf final : Engine {
 
 namespace {
 /// Refuses effects that cannot run in single precision: user-defined models, and sources that need Newton's
-/// method (algebra.hpp). A float cannot represent its tolerance of 1e-13.
+/// method (algebra.hpp). Single precision cannot represent the tolerance of Newton's method, 1e-13 pu.
 void refuse_in_float(const grid::Grid& grid) {
   Problems problems;
   const auto refuse = [&](const std::string& what, const std::string& why) {

@@ -1,5 +1,5 @@
 #pragma once
-// Batch integrator with independent SIMD lanes. The method is Dormand-Prince 5(4). Each lane of a pack
+// Batch integrator with independent SIMD lanes. The method is Dormand-Prince 5(4). Each lane of a SIMD pack
 // integrates its own event, with its own time, step size and step acceptance. A finished lane takes the next
 // job from the queue. Lanes share no arithmetic, so each result is bitwise independent of its lane and batch.
 #include <functional>
@@ -34,9 +34,9 @@ struct Job {
   /// its ownership.
   std::shared_ptr<const grid::Grid> grid = {};
   network::Event event;  ///< faults, switchings and steps of the simulation
-  /// Parameter values of one block.
+  /// Parameter values of one block (an effect of a plant).
   struct BlockValues {
-    int plant, block;            ///< index of the plant, and number of the block (sim/plant/parameter_id.hpp)
+    int plant, block;            ///< index of the plant; number of the block (sim/plant/parameter_id.hpp)
     std::vector<double> values;  ///< in record order
     /// Compares all members.
     friend bool operator==(const BlockValues&, const BlockValues&) = default;

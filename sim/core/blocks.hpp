@@ -35,7 +35,8 @@ inline T washout(const T& inverse_T, const T& x, const T& u, T& dx) {
   return select(inverse_T > T(0.0), u - x, T(0.0));
 }
 
-/// Dead band without a step (IEEE Std 421.5, type 2): 0 within +-`width`, beyond it the distance to the edge.
+/// Dead band without a step (IEEE Std 421.5, type 2): 0 for |u| <= `width`, beyond it the signed distance of
+/// u to the nearer edge.
 template <class T>
 inline T dead_band(const T& u, const T& width) {
   return positive_part(u - width) - positive_part(T(0.0) - u - width);
@@ -49,7 +50,7 @@ struct Quadratic {
   /// Returns the curve through the points (ea, sa) and (eb, sb), in either order; Se(V) = S at V = E [pu].
   static Quadratic through(const T& ea, const T& sa, const T& eb, const T& sb) {
     using std::sqrt;
-    const auto swapped = eb < ea;  // the two points occur in either order in files
+    const auto swapped = eb < ea;  // files give the two points in either order
     const T e1 = select(swapped, eb, ea), s1 = select(swapped, sb, sa);
     const T e2 = select(swapped, ea, eb), s2 = select(swapped, sa, sb);
     const auto on = s2 * e2 > s1 * e1;
@@ -67,8 +68,8 @@ struct Quadratic {
 };
 
 /// DC voltage of a three-phase bridge rectifier [pu]: V FEX(I/V) with source voltage V behind the commutating
-/// reactance and load I = KC Ifd. FEX is that of IEEE Std 421.5, annex D. Its product with V avoids a
-/// division.
+/// reactance and load I = KC Ifd. FEX is that of IEEE Std 421.5, annex D. Computing the product V FEX avoids
+/// the division I/V.
 template <class T>
 inline T rectified(const T& V, const T& I) {
   using std::sqrt;

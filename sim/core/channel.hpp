@@ -1,5 +1,5 @@
 #pragma once
-// Quantities that a simulation records for each plant. The simulator, the shards, the training and the
+// Quantities that a simulation records for each plant. The simulator, the dataset files, the training and the
 // reports share this one list.
 #include <array>
 #include <string_view>

@@ -4,17 +4,17 @@
 //   name, title, source, slot     identity, source of the equations, place in the plant
 //   description                   block diagram and equations as text; printed by `swingbank effects NAME`
 //   parameters[], states[]        one record each; the only declaration of a parameter
-//   defaults_from, bounds_from   sources of defaults and bounds where a parameter's record gives none
+//   defaults_from, bounds_from    sources of defaults and bounds if a parameter's record gives none
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
 //   check()                       refuses values at which the equations fail, such as a divisor of 0
-//   unphysical()                  optional: values in an order that no machine has (Xd < X'd); random draws
-//   refuse it prepare<T>()                  computes coefficients from parameters, so that the loop has no
-//   division equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
+//   unphysical()                  optional: refuses random draws in an order that no machine has (Xd < X'd)
+//   prepare<T>()                  computes coefficients from parameters, so that the loop has no division
+//   equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
 //   converter                     of a source, optional: true if it is a controlled current source
-//   at_shunt                      of a load, optional: layout of its .dyr records, if it models a switched
-//   shunt publish<T>()                  of a control, optional: outputs that are states, written before
-//   evaluation afterwards<T>()               of a control, optional: derivatives that need the field voltage
+//   at_shunt                      of a load, optional: layout of its .dyr records for switched shunts
+//   publish<T>()                  of a control, optional: writes outputs that are states, before evaluation
+//   afterwards<T>()               of a control, optional: derivatives that need the field voltage
 //   guards, guard<T>()            of a control, optional: functions that are zero where its derivatives jump
 //   remark()                      optional: warning about values that request unmodelled behaviour
 //   elsewhere                     of a plant control, optional: parameters that select its measuring point
@@ -71,7 +71,7 @@ inline constexpr std::array kSlots = {Slot::machine,       Slot::transformer,   
                                       Slot::load,          Slot::measurement};
 /// Returns the name of a slot, "governor".
 std::string_view slot_name(Slot slot);
-/// Whether the slot holds a control, which has ControlOps.
+/// Whether effects in this slot are controls, whose equations are ControlOps.
 constexpr bool is_control(Slot slot) { return slot >= Slot::compensator && slot <= Slot::electrical_control; }
 /// Whether a control in this slot belongs to a converter. Set-points exist for both kinds of source.
 constexpr bool is_of_converter(Slot slot) {
@@ -81,8 +81,8 @@ constexpr bool is_of_converter(Slot slot) {
 constexpr bool is_shared(Slot slot) {
   return slot == Slot::setpoint || slot == Slot::limiter || slot == Slot::shaft || slot == Slot::measurement;
 }
-/// Returns the slot of the only control that reads the outputs of a control in `slot`; none if the machine or
-/// several controls read them.
+/// Returns the slot whose control alone reads the outputs of a control in `slot`. Returns none if the machine
+/// or several controls read these outputs.
 constexpr std::optional<Slot> reader_of(Slot slot) {
   switch (slot) {
     case Slot::compensator:
@@ -103,8 +103,8 @@ constexpr Source kAsEffect = {};
 /// One parameter of an effect. `low` and `high` bound the usual range (sim/plant/usual.hpp); check() refuses
 /// values with which the equations cannot be evaluated. A dataset's sampling box must lie within the range.
 /// At `null_value` the effect has no influence; this value may lie outside the usual range (NaN: none). The
-/// unit "code" marks an integer choice, which is neither sampled nor fitted. Empty sources default to
-/// defaults_from and bounds_from.
+/// unit "code" marks an integer choice, which is neither sampled nor fitted. If a source is empty, the
+/// effect's defaults_from or bounds_from applies.
 struct Parameter {
   std::string_view name;                        ///< identifier in configs, HDF5 and tables: "Xdp"
   std::string_view symbol;                      ///< usual notation: "X'd"
@@ -112,7 +112,7 @@ struct Parameter {
   double default_value, low, high, null_value;  ///< default; usual range; null value (NaN: none) [unit]
   std::string_view meaning;                     ///< definition, for tables and `swingbank effects`
   Source default_from = {}, bounds_from = {};   ///< sources of the default and of the range
-  int limit = 0;                                ///< +1: upper limit of a signal, -1: lower limit, 0: no limit
+  int limit = 0;  ///< +1: upper limit of a signal, -1: lower limit, 0: not a limit
   /// Whether the parameter is an integer choice (unit "code"), which is neither sampled nor fitted.
   [[nodiscard]] constexpr bool is_code() const { return unit == "code"; }
 };
@@ -178,10 +178,10 @@ struct Far {
   ///< voltage and current in the network frame [pu]; power out of the plant [pu]
 };
 
-/// Signals exchanged by the blocks of one plant, per unit on the machine's own base; r, i in the network
-/// frame. For a converter, Tm is the active current command and Efd the reactive current command, positive
-/// while the converter delivers Q [pu]. Code that estimates or records Tm and Efd therefore serves both kinds
-/// of source.
+/// Signals exchanged by the blocks of one plant, per unit on the machine's own base. The suffixes r and i
+/// mark real and imaginary parts in the network frame. For a converter, Tm is the active current command and
+/// Efd the reactive current command, positive while the converter delivers Q [pu]. Code that estimates or
+/// records Tm and Efd therefore serves both kinds of source.
 template <class T>
 struct Signals {
   T Vr{}, Vi{}, V{};   ///< voltage at the machine's terminal and its magnitude [pu]
@@ -228,7 +228,8 @@ struct MachineOps {
   /// point. Returns the reason of a failure, empty on success.
   std::string (*steady)(const T* p, T* c, Signals<T>& s, T* x) = nullptr;
   /// Optional, for machines without a constant impedance (saliency, saturated reactances): Vr, Vi -> Ir, Ii.
-  /// It is called after emf(). source_impedance() then gives the impedance at which the iteration starts.
+  /// It is called after emf(). For such a machine, source_impedance() gives only the constant impedance that
+  /// represents it in the network matrix.
   void (*current)(const T* c, const T* x, T* m, Signals<T>& s) = nullptr;
 };
 
@@ -241,8 +242,8 @@ struct ControlOps {
   /// From all signals at the operating point: computes states and references (kept in c). Returns the reason
   /// of a failure, empty on success.
   std::string (*steady)(const void* user_model, const T* p, T* c, Signals<T>& s, T* x) = nullptr;
-  /// Optional: writes outputs that are states before any control is evaluated, for controls earlier in the
-  /// order.
+  /// Optional: writes those outputs that equal states. It runs before any control is evaluated, so that
+  /// controls earlier in the order can read them.
   void (*publish)(const T* c, const T* x, Signals<T>& s) = nullptr;
   /// Optional: computes the guards, smooth functions of states and signals; Effect::guards is their number. A
   /// derivative of the effect jumps where one of them passes zero.
@@ -339,10 +340,10 @@ struct Effect {
   std::string (*remark)(const double* p) = nullptr;
   /// Returns the times at which the equations jump [s]; nullptr: never.
   std::vector<double> (*switching_times)(const void* user_model, const double* p);
-  /// Applies the instrument to the true phasors; `seed` drives its random numbers. Only for measurements.
+  /// Applies the instrument to the true phasors; `seed` determines its random numbers. Only for measurements.
   void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
-  /// Returns the time [s] before and after an output sample of measure() within which the input affects it;
-  /// nullptr: 0.
+  /// Returns the memory [s]: the longest time between an output sample of measure() and an input that affects
+  /// it, before or after the sample. nullptr: 0.
   double (*memory)(const double* p);
   /// Returns the lag T [s] of an angle that is integrated from the reported frequency: the true angle is
   /// theta + T d(theta)/dt. nullptr: 0.

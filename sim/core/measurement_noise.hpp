@@ -2,7 +2,7 @@
 // White measurement noise of a machine's record, set by one level L (0.001: 0.1 %).
 //   P, Q, V [pu of the machine], theta [rad]   L
 //   Ifd, Efd                                   L times the value (relative errors of shunts, transducers)
-//   speed [pu]                                 L/20, because a toothed wheel is timed; 3 mHz at L = 0.1 %
+//   speed [pu]                                 L/20, because a toothed wheel measures it; 3 mHz at L = 0.1 %
 // Phasor instruments are rated by total vector error. An error vector of relative length L changes the
 // magnitude by at most L and the angle by at most L rad. IEEE C37.118.1 allows 1 %; good instruments have
 // 0.1 to 0.5 %.

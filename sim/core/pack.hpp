@@ -20,7 +20,7 @@ namespace swingbank::sim {
 inline thread_local std::uint64_t pack_operations = 0;
 inline void count_operations(int lanes) { pack_operations += static_cast<std::uint64_t>(lanes); }
 #else
-/// Counts operations of `lanes` lanes, in builds with SWINGBANK_COUNT_FLOPS only.
+/// Counts one operation in each of `lanes` lanes; does nothing in builds without SWINGBANK_COUNT_FLOPS.
 inline void count_operations(int) {}
 #endif
 
@@ -115,8 +115,8 @@ requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
   using InMemory = typename VectorOf<S, sizeof(S) * N>::InMemory;
   /// Signed integer of the size of S.
   using Integer = std::conditional_t<sizeof(S) == 8, std::int64_t, std::int32_t>;
-  using Mask = typename VectorOf<Integer, sizeof(S) * N>::Type;  ///< result of a comparison: all bits of a
-                                                                 ///< true lane set
+  using Mask = typename VectorOf<Integer, sizeof(S) * N>::Type;  ///< result of a comparison: a lane with the
+                                                                 ///< result true has all bits set
   static constexpr int lanes = N;                                ///< number of lanes N
   static constexpr bool one_register = true;                     ///< whether the value is one vector register
   Vector v;                                                      ///< all lanes
@@ -128,8 +128,8 @@ requires(sizeof(S) * N <= kRegisterBytes) struct Packed<S, N> {
   S operator[](int lane) const { return v[lane]; }       ///< value of one lane
   /// Sets one lane.
   void set(int lane, double a) { v[lane] = static_cast<S>(a); }
-  /// Loads N numbers; `from` needs no alignment. Loads a vector type, because GCC would copy bytes through
-  /// integer registers.
+  /// Loads N numbers; `from` needs no alignment. The vector type is loaded directly, because GCC would copy
+  /// bytes through integer registers.
   static Packed load(const S* from) { return Vector(*reinterpret_cast<const InMemory*>(from)); }
   /// Stores N numbers; `to` needs no alignment.
   void store(S* to) const { *reinterpret_cast<InMemory*>(to) = v; }

@@ -39,7 +39,7 @@ inline T exponential_saturation(const T& s10, const T& exponent, const T& flux_s
 /// Quadratic saturation as a template policy of a machine: coefficients `a`, `b`, Se as a function of psi^2,
 /// and the test of the two factors. ExponentialSaturation has the same members.
 struct QuadraticSaturation {
-  /// Reason of the error message about two factors without a curve.
+  /// Reason in the error message for two factors that no such curve fits.
   static constexpr std::string_view impossible =
       "no quadratic saturation curve has these factors S1.0 and S1.2";
   /// Remedy in that message.
@@ -61,7 +61,7 @@ struct QuadraticSaturation {
 };
 /// Exponential saturation Se = S1.0 psi^x as a template policy of a machine; coefficients a = S1.0, b = x.
 struct ExponentialSaturation {
-  /// Reason of the error message about two factors without a curve.
+  /// Reason in the error message for two factors that no such curve fits.
   static constexpr std::string_view impossible =
       "no exponential saturation curve has these factors S1.0 and S1.2";
   /// Remedy in that message.

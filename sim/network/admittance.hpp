@@ -16,7 +16,7 @@ struct BranchEnd {
 /// Returns the admittances seen from the `from` end, or from the `to` end.
 BranchEnd branch_end(const Branch& branch, bool at_from);
 
-/// Where the series impedances of ties (tie.hpp) are: in the matrix, or left out for separate equations.
+/// Place of the series impedances of ties (tie.hpp): in the matrix, or in separate equations outside it.
 enum class TiesIn { matrix, equations };
 
 /// Returns the n x n bus admittance matrix [pu] of branches and shunts only, as used by the power flow.
@@ -39,9 +39,9 @@ std::vector<int> dead_buses(const Network& network, const Topology& topology);
 /// Returns the buses at V = 0, by a bolted fault or because they are dead, sorted.
 std::vector<int> grounded_buses(const Network& network, const Topology& topology);
 
-/// Kron reduction of `dynamic_admittance` to the `kept` buses: I = Y V. All other buses carry no injection;
-/// grounded buses are eliminated with V = 0. Rows and columns of a kept bus that is grounded are zero, and
-/// `grounded` lists it. Throws InputError if the matrix of the eliminated buses is singular.
+/// Kron reduction of `dynamic_admittance` to the `kept` buses: I = Y V. No current is injected at any other
+/// bus. Grounded buses are eliminated with V = 0. Rows and columns of a kept bus that is grounded are zero,
+/// and `grounded` lists it. Throws InputError if the matrix of the eliminated buses is singular.
 struct ReducedNetwork {
   Eigen::MatrixXcd y;         ///< kept x kept [pu on base_mva]
   std::vector<int> grounded;  ///< positions in `kept` with zero voltage

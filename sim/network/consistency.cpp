@@ -50,7 +50,8 @@ void settle_stars(Network& n, const std::set<int>& stars) {
     Complex others{}, own{};
     for (decltype(y)::InnerIterator e(y, star); e; ++e) {
       const Bus& other = at(n, static_cast<int>(e.row()));
-      // The iterator runs over the star's column, but its row is needed. They differ by the phase shifts.
+      // The iterator runs over the star's column, but the star's row is needed. Row and column differ by the
+      // phase shifts.
       const Complex value = y.coeff(star, static_cast<int>(e.row()));
       (e.row() == star ? own : others) += e.row() == star ? value : value * std::polar(other.vm, other.va);
     }
@@ -96,7 +97,7 @@ bool is_of(const Duplicate& d, Duplicate::Kind, const Network& n, const Branch& 
   return (from.number == d.buses[0] && to.number == d.buses[1]) ||
          (from.number == d.buses[1] && to.number == d.buses[0]);
 }
-/// Whether a load, shunt or generator is the duplicate.
+/// Whether a load, shunt or generator is the duplicate `d`.
 template <class Equipment>
 bool is_of(const Duplicate& d, Duplicate::Kind kind, const Network& n, const Equipment& e) {
   return d.kind == kind && e.id == d.id && at(n, e.bus).number == d.buses[0];
@@ -411,7 +412,7 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
     n.loads.push_back({b, id, draws, {}, {}, of.area, of.zone, of.owner, LoadKind::device});
     n.remark("equipment without a model draws constant P and Q, computed from the file's voltages",
              names + " at bus " + std::to_string(of.number) + ": " + power_text(draws, n.base_mva));
-    constexpr double far = 0.1;  // of the schedule, in addition to the file's rounding
+    constexpr double far = 0.1;  // fraction of the schedule, in addition to the file's rounding
     if (const double scheduled = schedule.at(b);
         sharing[pool[i]] == 1 && std::abs(draws.real() - scheduled) > most + far * std::abs(scheduled))
       n.remark(

@@ -34,13 +34,14 @@ void settle_duplicates(Network& network, const std::vector<Duplicate>& duplicate
 /// Resolves contradictions between generators in service, with a remark for each:
 /// - At a load bus (type 1) a generator delivers its P and Q if the file's voltages confirm that power.
 ///   Otherwise it is out of service, as in PSS/E.
-/// - Generators of one bus with different set-points or regulated buses take those of the first.
-/// - A generator that regulates a bus out of service regulates its own bus, at the file's voltage.
+/// - If generators of one bus have different set-points or regulated buses, all take those of the first
+///   generator.
+/// - A generator whose regulated bus is out of service regulates its own bus, at the file's voltage.
 /// - Reactive limits with q_min above q_max are removed.
 /// `where(i)`: place of generator i in the file.
 void settle_generators(Network& network, const std::function<std::string(std::size_t)>& where);
-/// Gives every island without a slack bus one, at its largest generator by MVA. Takes islands without a
-/// generator out of service (type 4). Adds remarks.
+/// Makes the bus of the largest generator (by MVA) the slack bus of every island that has no slack bus. Takes
+/// islands without a generator out of service (type 4). Adds remarks.
 void settle_islands(Network& network);
 
 /// Equipment without a model in Swingbank: kind, name and buses.
@@ -51,9 +52,9 @@ struct Device {
 };
 /// Replacement of equipment without a model.
 enum class DeviceReplacement {
-  checked,  ///< loads computed from the file's voltages; a problem if they are not a solution at the
+  checked,  ///< loads computed from the file's voltages; a problem if these voltages are no solution at
             ///< other buses
-  file,     ///< the same without that check
+  file,     ///< loads computed from the file's voltages, without that check
   none      ///< no replacement
 };
 /// Replaces devices by loads, with a remark. Errors are added to `problems`.

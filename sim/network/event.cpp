@@ -125,7 +125,8 @@ std::vector<Interval> generator_intervals(const Event& event, const Network& net
   return list;
 }
 
-/// Returns the generators that have lost a part of their units until t, and their connected shares.
+/// Returns the generators that have lost a part of their units by time t [s], and the connected fraction of
+/// each.
 std::vector<std::pair<int, double>> partly_tripped_at(const Event& event, double t,
                                                       const std::vector<int>& tripped) {
   std::map<int, double> left;
@@ -135,7 +136,7 @@ std::vector<std::pair<int, double>> partly_tripped_at(const Event& event, double
   return {left.begin(), left.end()};
 }
 void check_parts(const Event& event, const Network& network, Problems& problems) {
-  constexpr double least = 1e-6;  // below it only rounding errors remain
+  constexpr double least = 1e-6;  // a smaller connected fraction is a rounding error
   for (const auto& [generator, left] : partly_tripped_at(event, kForGood, {}))
     if (left < least && generator >= 0 && generator < static_cast<int>(network.generators.size()))
       problems.add("partial trips disconnect all units", generator_name(network, generator),

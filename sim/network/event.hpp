@@ -21,12 +21,12 @@ struct LineTrip {
   double t_open;                  ///< time of opening [s]
   std::optional<double> t_close;  ///< time of reclosing [s]; none: the branch stays open
 };
-/// Permanent disconnection of a generator or of a part of it. The plant then represents several units, some
-/// of which are lost; the others continue unchanged.
+/// Permanent disconnection of a generator or of a part of it. For a partial trip, the plant represents
+/// several units. Some are lost; the remaining units continue unchanged.
 struct GeneratorTrip {
   int generator;      ///< index into Network::generators
   double time;        ///< time of the trip [s]
-  double part = 1.0;  ///< share of its units, > 0; 1: all
+  double part = 1.0;  ///< disconnected fraction of its units, > 0; 1: all
 };
 /// Consumption added at a bus (removed if negative): the constant admittance that draws `power` at the
 /// voltage before the event.
@@ -57,12 +57,12 @@ struct Topology {
   std::vector<int> open = {};                            ///< branch indices, sorted
   std::vector<int> tripped = {};                         ///< generator indices, sorted
   std::vector<std::pair<int, Complex>> load_steps = {};  ///< bus index, power [pu]; sorted by bus
-  /// Generators that have lost a part of their units, and the share still connected; sorted, disjoint from
+  /// Generators that have lost a part of their units, and the fraction still connected; sorted, disjoint from
   /// `tripped`.
   std::vector<std::pair<int, double>> partly_tripped = {};
   /// Compares all members.
   friend bool operator==(const Topology&, const Topology&) = default;
-  /// Returns the connected share of a generator's units, 0 to 1.
+  /// Returns the connected fraction of a generator's units, 0 to 1.
   [[nodiscard]] double connected(int generator) const;
 };
 /// Change of one generator's references during a segment [pu].

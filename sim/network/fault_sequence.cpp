@@ -9,7 +9,7 @@
 namespace swingbank::sim::network {
 namespace {
 
-/// Returns the topology during the fault, without the fault.
+/// Returns the topology at the time of the fault, but without the fault itself.
 Topology around(const Event& event, const Network& network, Problems& problems) {
   const BusFault& fault = event.faults.front();
   Topology topology;

@@ -21,9 +21,9 @@ constexpr bool to_ground(FaultType type) {
   return type == FaultType::line_to_ground || type == FaultType::two_phase_to_ground;
 }
 
-/// Returns the shunt impedance in the positive sequence. z2, z0: sequence impedances of the grid at the
-/// fault, without the fault. zf: impedance between phase and ground, between the two phases, or between the
-/// joined phases and ground. All on one base; z0 is read only for faults to ground.
+/// Returns the shunt impedance in the positive sequence. z2, z0: negative- and zero-sequence impedances of
+/// the unfaulted grid, seen from the faulted bus. zf: impedance between phase and ground, between the two
+/// phases, or between the joined phases and ground. All on one base; z0 is read only for faults to ground.
 Complex fault_impedance(FaultType type, Complex z2, Complex z0, Complex zf);
 
 /// A machine in the negative-sequence network.

@@ -22,7 +22,7 @@ std::vector<Complex> voltages_of_file(const Network& network) {
   return v;
 }
 
-/// Computes imbalance_of_file() at other voltages.
+/// Computes the imbalances of imbalance_of_file() at the voltages `voltage` [pu].
 std::vector<Complex> imbalance_at(const Network& network, const std::vector<Complex>& voltage, TiesIn ties) {
   const Eigen::Map<const Eigen::VectorXcd> v(voltage.data(), static_cast<Eigen::Index>(voltage.size()));
   const Eigen::VectorXcd s = v.cwiseProduct((bus_admittance(network, {}, ties) * v).conjugate());

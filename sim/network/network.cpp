@@ -71,7 +71,7 @@ std::vector<int> islands(const Network& network, const std::vector<int>& open) {
 }
 
 std::string bus_list(const Network& network, const std::vector<int>& buses) {
-  constexpr std::size_t most = 20;  // limit for a readable sentence
+  constexpr std::size_t most = 20;  // largest number of buses in a readable sentence
   std::string numbers, stars;
   std::size_t count = 0;
   for (std::size_t i = 0; i < buses.size() && i < most; ++i) {

@@ -94,7 +94,7 @@ class Newton {
     }
     bus_unknowns_ = unknowns_;
     unknowns_ += 2 * static_cast<int>(ties_.size());
-    // Equations that depend on the reactive power of each bus, with their factors.
+    // Equations that depend on the reactive power of each bus, each with the factor of that power.
     for (int i = 0; i < count; ++i) {
       const Role& role = roles[as_index(i)];
       if (role.kind == Role::load) reactive_[as_index(i)].push_back({magnitude_[as_index(i)], 1.0});
@@ -338,8 +338,8 @@ class Newton {
   int worst_bus_ = -1;
 };
 
-/// Solves with the present roles. Starts from the present voltages (if `limited`), else from the file's, else
-/// from a flat start, and at last with shorter steps. Throws InputError if all starts fail.
+/// Solves with the present roles. Tries in turn the present voltages (if `limited`), the file's voltages and
+/// a flat start; then both again with shorter steps. Throws InputError if all starts fail.
 void solve(Newton& newton, const Network& network, const PowerFlowOptions& options, bool limited,
            int& iterations) {
   if (limited && newton.iterate(options.tolerance, options.limit, iterations)) return;
@@ -377,7 +377,7 @@ void share_freely(const Network& n, const std::vector<std::size_t>& units, doubl
                   std::vector<Complex>& generation) {
   Complex rest = power;
   for (const std::size_t k : units) rest -= Complex(n.generators[k].p, n.generators[k].q);
-  constexpr double near = 0.01;  // of the units' MVA
+  constexpr double near = 0.01;  // fraction of the units' MVA
   const bool of_file = units.size() > 1 && std::abs(rest) * n.base_mva <= near * mva;
   for (const std::size_t k : units) {
     const Generator& g = n.generators[k];
@@ -405,7 +405,7 @@ void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions&
     return g.q_min <= g.q_max ? std::clamp(generation[k].imag(), g.q_min, g.q_max) : generation[k].imag();
   };
   std::vector<std::size_t> open = units;
-  while (true) {  // moves excess to units with reserve; at most as many rounds as units
+  while (true) {  // moves excess to units with reserve; at most one iteration per unit
     double rest = power.imag(), free_mva = 0.0;
     std::vector<std::size_t> free;
     for (const std::size_t k : units) {

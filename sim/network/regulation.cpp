@@ -69,14 +69,14 @@ void Regulation::assign() {
       role.kind = s->bus == leader ? Role::leads : Role::follows;
     }
   }
-  double most = 0.0;  // shares of at most 1, so that all equations have similar magnitudes
+  double most = 0.0;  // scales the largest share to 1, so that all equations have similar magnitudes
   for (const Role& role : roles_) most = std::max(most, role.share);
   for (Role& role : roles_) role.share /= most;
 }
 
 bool Regulation::limit(const std::function<double(int)>& reactive,
                        const std::function<double(int)>& voltage) {
-  constexpr double beyond = 1e-9;  // [pu], ignores rounding
+  constexpr double beyond = 1e-9;  // tolerance [pu] for rounding
   constexpr int most = 3;          // largest number of returns; afterwards the bus stays at its limit
   bool moved = false;
   for (Source& s : sources_) {

@@ -4,7 +4,7 @@
 // so that the network equation remains I = (G + jB) E. Newton's method solves for the voltages V at these
 // sources. Each lane stops when its own voltages have converged, so that its result is bitwise independent of
 // the other lanes. V is the voltage at the machine's terminal. With a step-up transformer of ratio n, the
-// network has the source voltage n E, and the machine has the current n I.
+// source voltage in the network is n E, and the machine's current is n times the network current I.
 #include "sim/batch/detail/batch_kernel.hpp"
 
 namespace swingbank::sim::batch {
@@ -220,7 +220,7 @@ struct LaneSearch {
 template <class T>
 unsigned BatchKernel<T>::search_voltages(Constants& k, const T* x, unsigned open) {
   constexpr int limit = 40, patience = 8;
-  constexpr double longest = 0.3;  // [pu], because a constant-power load may cause too large first steps
+  constexpr double longest = 0.3;  // largest step [pu]; a constant-power load may cause too large first steps
   constexpr unsigned all = (1U << kLanes) - 1U;
   const std::size_t count = nonlinear_.size();
   auto seeking = Traits::mask(open);

@@ -39,8 +39,8 @@ class BatchKernel {
   /// Factor of dp54::kink in the error estimate. 0.03 would bound the error of a kink by the tolerance; this
   /// value bounds it by ten times the tolerance.
   static constexpr double kKinkShare = 0.003;
-  /// Minimum weight of a state in the kink error, because the record shows this error even if it decays
-  /// quickly.
+  /// Minimum weight of a state in the kink error. It is needed because the record shows a kink error even if
+  /// that error decays quickly.
   static constexpr double kKinkWeight = 0.3;
   struct PlantSlice {
     plant::PlantEquations<T> equations;
@@ -55,7 +55,7 @@ class BatchKernel {
   struct Watch {
     int first, count;           ///< states of the exciter
     T start{}, last{};          ///< Vs at the start of the step and at the last stage
-    T rested{}, rested_next{};  ///< 1 if the last stage left Vs unchanged: previous step, this step
+    T rested{}, rested_next{};  ///< 1 if the last stage left Vs unchanged; for the previous and this step
     T same{};                   ///< number of stages with Vs unchanged from the previous stage
   };
 
@@ -178,9 +178,9 @@ class BatchKernel {
   SharedNetwork<T> shared_;                             ///< used if shares_
   std::optional<SwitchedNetwork> switched_;             ///< used if shares_
   std::optional<InternalMatrix> own_matrix_;            ///< computed on demand
-  bool whole_record_ = false;              ///< if shares_: all currents cost less than the recorded rows
-  Terminals terminals_;                    ///< if shares_: connections in the segment that a lane enters
-  std::vector<double> own_r_, own_x_;      ///< if shares_: impedances of the grid's own machines [pu]
+  bool whole_record_ = false;          ///< if shares_: true if all currents cost less than the recorded rows
+  Terminals terminals_;                ///< if shares_: connections in the segment that a lane enters
+  std::vector<double> own_r_, own_x_;  ///< if shares_: impedances of the grid's own machines [pu]
   std::vector<SharedRows> recorded_rows_;  ///< if shares_: rows of the recorded plants, per lane
   std::vector<PlantSlice> plants_;
   std::vector<LoadSlice> loads_;
@@ -194,10 +194,10 @@ class BatchKernel {
   std::vector<Weighed> weighed_;
   bool weighs_ = false;                ///< true if a coefficient of weighed_ exceeds 1 in any lane
   std::vector<int> moving_;            ///< states that are not constant in some lane
-  std::vector<int> wanted_, sampled_;  ///< states that the outputs need; the moving ones among them
+  std::vector<int> wanted_, sampled_;  ///< states that the outputs need; those of them that move
   std::vector<char> needed_;           ///< per state: 1 if the outputs need it
   std::vector<std::pair<std::size_t, std::size_t>>
-      broadcast_;  ///< coefficients that the outputs need: first, number
+      broadcast_;  ///< coefficients that the outputs need: first index, number
   std::vector<int> recorded_;
   std::vector<Channel> channels_;
   int n_ = 0, sources_ = 0, samples_ = 0, states_ = 0;
@@ -207,7 +207,7 @@ class BatchKernel {
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;   ///< scratch of one evaluation
   std::vector<T> ir_, ii_;       ///< scratch, if shares_
-  Signals<T> signals_;           ///< scratch shared by all plants, because a new one would zero 25 packs
+  Signals<T> signals_;           ///< scratch shared by all plants, because a new object would zero 25 packs
   std::vector<T> algebra_;       ///< scratch of newton_step
   std::vector<T> steady_;        ///< currents of the linear sources at the nonlinear ones
   T time_{}, start_{};           ///< time of the evaluation, start of the step [s]

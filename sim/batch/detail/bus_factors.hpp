@@ -13,7 +13,7 @@ class BusFactors {
  public:
   using Sparse = Eigen::SparseMatrix<Complex>;
   /// Factorises without pivoting. Admittance matrices that include the machines' own admittances seldom need
-  /// it. Returns false if this matrix does.
+  /// pivoting. Returns false if this matrix needs it.
   bool factor(const Sparse& admittance);
   [[nodiscard]] std::size_t buses() const { return inverse_.size(); }
   [[nodiscard]] std::size_t entries() const { return lower_.entries.size() + upper_.entries.size(); }
@@ -39,7 +39,7 @@ class BusFactors {
   template <class T>
   static void take_off(const Triangle& triangle, std::size_t row, T* real, T* imaginary);
 
-  std::vector<int> order_, place_;  ///< bus eliminated k-th, and its inverse permutation
+  std::vector<int> order_, place_;  ///< bus eliminated k-th; inverse permutation of order_
   Triangle lower_, upper_;          ///< upper: divided by the row's pivot
   std::vector<Complex> inverse_;    ///< reciprocal pivots
 };

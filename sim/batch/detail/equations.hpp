@@ -24,7 +24,7 @@ inline void BatchKernel<T>::current(const Constants& k, std::size_t source, Sign
   if (source < plants_.size()) inputs(k, source, s);
 }
 
-/// The same if all currents have been computed; `at` is the index of this plant's current.
+/// As current(), if all currents are already computed; `at` is the index of this plant's current.
 template <class T>
 inline void BatchKernel<T>::shared_current(std::size_t at, const Constants& k, std::size_t plant,
                                            Signals<T>& s) const {

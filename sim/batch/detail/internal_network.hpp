@@ -58,8 +58,8 @@ class InternalNetwork {
   explicit InternalNetwork(const grid::Grid& grid);
   [[nodiscard]] int sources() const { return static_cast<int>(node_of_.size()); }
   /// Returns the matrix of a topology. r, x: impedance per source [pu on its own base]. The matrix of each
-  /// topology is cached until its impedances change. The reference is valid until the next call for this
-  /// topology with other impedances.
+  /// topology is cached until r or x changes. The reference is valid until the next call for this topology
+  /// with other impedances.
   const InternalMatrix& matrix(const network::Topology& topology, const std::vector<double>& r,
                                const std::vector<double>& x);
 

@@ -20,8 +20,8 @@ struct LowRank {
   }
 };
 
-/// Returns matrix - from as outer products, by elimination with full pivoting until the largest remaining
-/// entry is a rounding error. Returns none if this needs more than `most` products.
+/// Returns matrix - from as outer products, by elimination with full pivoting. The elimination stops when the
+/// largest remaining entry is a rounding error. Returns none if this needs more than `most` products.
 std::optional<LowRank> difference(const InternalMatrix& matrix, const InternalMatrix& from, int most);
 
 struct ImpedanceChange {

@@ -27,8 +27,8 @@ void BatchKernel<T>::dense(std::size_t state, const T& h, T* row) const {
   row[4] = h * d;
 }
 
-/// Records the samples in (start, start + tried] of every accepted lane, in several rounds if a step has more
-/// samples than the buffer holds.
+/// Records the samples in (start, start + tried] of every accepted lane. If a step has more samples than the
+/// buffer holds, they are recorded in several parts.
 template <class T>
 void BatchKernel<T>::record_step(const T& h, unsigned accepted, const double* start, const double* tried) {
   for (;;) {
@@ -276,7 +276,7 @@ void BatchKernel<T>::outputs(std::size_t k, const T* x, BatchRun& run, int count
 /// last value.
 template <class T>
 T BatchKernel<T>::unwrapped(T angle, const T& squared, double last, int count) const {
-  constexpr double kNoAngle = 1e-9;  // below it |V| is rounding error at a bolted fault [pu]
+  constexpr double kNoAngle = 1e-9;  // [pu]; a smaller |V| is the rounding error at a bolted fault
   T turns(0.0);  // added at the end, because set() would clear the derivatives of the angle
   for (int l = 0; l < count; ++l) {
     if (Traits::get(squared, l) < kNoAngle * kNoAngle) Traits::set(angle, l, last);

@@ -37,7 +37,8 @@ class SharedNetwork {
   void set(int lane, const InternalMatrix& matrix);
   /// Computes all currents; ir and ii have the size SharedRows::padded.
   void solve(const T* er, const T* ei, T* ir, T* ii);
-  /// Computes all currents with the products of `lane`, if all lanes of er and ei belong to its event.
+  /// Computes all currents with the products of lane number `lane`. Every SIMD lane of er and ei must belong
+  /// to that lane's event.
   void solve_of(int lane, const T* er, const T* ei, T* ir, T* ii);
   /// Returns true if a lane has a separate matrix.
   [[nodiscard]] bool whole(int lane) const { return ((whole_ >> lane) & 1U) != 0; }
@@ -63,7 +64,7 @@ class SharedNetwork {
   std::array<int, kLanes> rank_{};
   int most_ = 0;          ///< maximum of rank_
   unsigned whole_ = 0;    ///< lanes with a separate matrix
-  std::vector<T> g_, b_;  ///< their matrices; empty until the first use
+  std::vector<T> g_, b_;  ///< matrices of the lanes in whole_; empty until the first use
 };
 
 template <class T>

@@ -5,8 +5,8 @@
 
 namespace swingbank::sim::batch {
 
-/// Evaluates the first stage of lanes that were loaded or switched. The others reuse the last stage of their
-/// previous step (first same as last).
+/// Evaluates the first stage of lanes that were loaded or switched. The other lanes reuse the last stage of
+/// their previous step (first same as last).
 template <class T>
 void BatchKernel<T>::evaluate_fresh() {
   if (timed_) {
@@ -134,7 +134,8 @@ T BatchKernel<T>::angle_spread(const T* x) const {
   return maximum(high - low, T(0.0));
 }
 
-/// Returns the same for a lane with several islands [rad]. Only rotors of the same island are compared.
+/// Returns the largest change of the angle between two rotors of the same island since the start [rad]. For a
+/// lane with several islands.
 template <class T>
 double BatchKernel<T>::angle_spread_within_islands(int lane) const {
   const auto l = static_cast<std::size_t>(lane);

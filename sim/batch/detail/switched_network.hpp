@@ -36,8 +36,8 @@ class SwitchedNetwork {
  private:
   struct Touched {
     std::vector<int> buses;
-    Eigen::MatrixXcd admittance;  ///< added admittance between them
-    Eigen::MatrixXcd voltage;     ///< voltages of all buses (rows) per unit current into them
+    Eigen::MatrixXcd admittance;  ///< added admittance between these buses
+    Eigen::MatrixXcd voltage;  ///< voltages of all buses (rows) per unit current into these buses (columns)
   };
   [[nodiscard]] std::optional<Touched> touch(const network::Topology& topology, int most) const;
   [[nodiscard]] std::optional<Eigen::MatrixXcd> currents(const Touched& touched,

@@ -15,7 +15,7 @@ struct Role {
     regulated,  ///< magnitude is given, regulated by its own generators
     load,       ///< P and Q are given
     leads,      ///< Q is unknown; it sets the magnitude at another bus, `target`
-    follows     ///< Q is proportional to that of bus `leader`, by their shares
+    follows     ///< Q is that of bus `leader` times the ratio of their shares
   };
   Kind kind = load;
   Complex generation{};   ///< power of its generators: P, and Q if it is given [pu]
