@@ -26,7 +26,7 @@ Eigen::VectorXd integral(const Eigen::VectorXd& f, double step) {
 }
 
 double leap_limit(const Recording& record) {
-  constexpr double kLeastLeap = 0.01, kShare = 0.2;  // [pu]; share of the largest change
+  constexpr double kLeastLeap = 0.01, kShare = 0.2;  // [pu]; fraction of the largest change
   constexpr double kDeviations = 6;  // standard deviations of the difference of two noisy samples
   const auto& V = record.V;
   double largest = kLeastLeap;

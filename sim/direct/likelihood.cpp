@@ -108,7 +108,7 @@ MostProbable search(const Effect& machine, const NoisyRecord& record, const std:
                     std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
   constexpr double kSameCost = 0.02;  // change of the cost between two linearisations
   // A search stops if its reduced chi-square exceeds kLost and its cost decreases by less than the fraction
-  // kCreeps. It is then trapped in a corner of the box.
+  // kCreeps. It is then trapped in a corner of the parameter bounds.
   constexpr double kLost = 1.15, kCreeps = 0.005;
   Posterior posterior(machine, record, start, free);
   VectorXd z = posterior.start();
@@ -158,9 +158,9 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
   constexpr std::uint32_t kStartsDrawn = 12;
-  // The reduced chi-square cannot reveal a wrong local optimum. For thousands of samples the sum scatters by
-  // a hundred, and a wrong optimum may cost only ten more than the right one. Therefore two starts must
-  // agree.
+  // The reduced chi-square cannot reveal a wrong local optimum. For thousands of samples the sum of squares
+  // scatters by a hundred, and a wrong optimum may cost only ten more than the right one. Therefore two
+  // starts must agree.
   constexpr double kSameCost = 1;
   constexpr int kAgree = 2;
   const NoisyRecord noisy = noisy_record(record, options.longest);

@@ -24,12 +24,12 @@ struct MostProbable {
   std::vector<double> p;  ///< all parameters of the effect
   double chi_square = 0;  ///< reduced chi-square of the innovations; about 1 for a correct model
   double cost = 0;        ///< sum of squares of whitened innovations and prior
-  int iterations = 0;     ///< number of iterations over all rounds
+  int iterations = 0;     ///< number of iterations over all linearisations
 };
 /// Effort of the maximum a posteriori estimate.
 struct LikelihoodOptions {
   int rounds = 20;        ///< number of linearisations
-  int iterations = 8;     ///< number of iterations in each round
+  int iterations = 8;     ///< number of iterations for each linearisation
   double longest = 13.0;  ///< length of the segment after the event [s]
 };
 

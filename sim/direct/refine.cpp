@@ -48,8 +48,8 @@ class MachinePlayback {
     }
     return out;
   }
-  /// Returns the fluxes at the segment's start, integrated from the steady state. The fault's edges lie
-  /// between samples, so that this is only a start value for the fit.
+  /// Returns the fluxes at the segment's start, integrated from the steady state. The fault starts and ends
+  /// between samples, so that the result is only a start value for the fit.
   std::vector<double> fluxes_at_start(const std::vector<double>& p) const {
     Machine<double> m = machine(p);
     const double angle = m.x[0];
@@ -154,7 +154,8 @@ double exact(const Recording& record) {
   return std::max(kIntegration, kOfNoise * std::sqrt(square));
 }
 
-/// Returns a start near `p`: each free parameter is halfway to a random value within its bounds.
+/// Returns a start near `p`: each free parameter is halfway between its value in `p` and a random value
+/// within its bounds.
 std::vector<double> drawn_about(std::vector<double> p, std::uint32_t draw, std::span<const int> free,
                                 std::span<const double> low, std::span<const double> high) {
   constexpr std::uint64_t kSeed = 1;

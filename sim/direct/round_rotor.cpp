@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kLongest = 6.0;  ///< segment length [s]; later samples contain little information
-constexpr int kAngles = 161, kKnees = 61, kReactances = 201;  ///< number of points of the three grids
+constexpr int kAngles = 161, kKnees = 61, kReactances = 201;  ///< grid points of the three searches
 constexpr double kSaliency = 2.4;  ///< largest (Xq - X'')/(1 + ks Se) in the search [pu]
 
 /// Least-squares solution of columns x = target with scaled columns; `left`: root mean square residual.

@@ -11,7 +11,7 @@ namespace swingbank::sim::direct {
 /// Parameters in GENROU's notation. X''d and Ra are given; all others are estimated.
 struct RoundRotor {
   double Tdop = 0, Tdopp = 0, Tqop = 0, Tqopp = 0, H = 0, D = 0, Xd = 0, Xq = 0, Xdp = 0, Xqp = 0;
-  ///< [s] time constants and H; [pu] the others
+  ///< time constants and H [s]; D and reactances [pu]
   double Xdpp = 0, Xl = 0, S10 = 0, S12 = 0;  ///< [pu]
   double angle = 0;  ///< rotor angle relative to the terminal at the first sample [rad]
   double rms_error =

@@ -1,7 +1,7 @@
 // Reader of the branches and transformers of an .epc. The sections of a line are in series, without buses
 // between them. A transformer's impedances are per unit of tbase and of the windings' nominal voltages. In
-// per unit of the bus voltages, a winding is an ideal ratio: its nominal voltage over the bus's, times its
-// tap.
+// per unit of the bus voltages, a winding is an ideal ratio: the winding's nominal voltage divided by that of
+// its bus, times the winding's tap.
 #include <algorithm>
 #include <array>
 #include <cmath>

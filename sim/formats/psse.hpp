@@ -13,8 +13,8 @@
 
 namespace swingbank::sim::formats {
 
-/// Treatment of equipment with a duplicate identity (buses and id). For a duplicate bus, `refused` applies
-/// always.
+/// Treatment of equipment with a duplicate identity (buses and id). A duplicate bus is always treated as
+/// `refused`.
 enum class Repeated {
   refused,   ///< a problem; dropped with RawOptions::drop_refused
   kept,      ///< kept under a new id
@@ -44,7 +44,7 @@ struct RawOptions {
 ///
 /// Read:
 /// - header, bus, load, fixed shunt, generator, branch;
-/// - system switching device (a closed one is a line with its X);
+/// - system switching device (a closed device becomes a line with its X);
 /// - transformer with two windings; CW 1-3, CZ 1-3, CM 1-2, impedance correction at the present tap or angle;
 /// - transformer with three windings: the star point is a new bus, numbered above every bus of the file, and
 ///   each winding is a transformer to it;
@@ -67,9 +67,9 @@ struct RawOptions {
 /// - ratings, names of branches, vector groups, voltage limits;
 /// - tap and load-flow controls (taps are fixed), substations without split buses.
 ///
-/// Refused, with section and line: a bus that open switches of a substation split, and buses that its closed
-/// switches join. Out-of-service loads and shunts are dropped. Equipment at an isolated bus (type 4) is out
-/// of service, as in PSS/E.
+/// Refused, with section and line: a bus that is split by open switches of a substation, and buses that are
+/// joined by its closed switches. Out-of-service loads and shunts are dropped. Equipment at an isolated bus
+/// (type 4) is out of service, as in PSS/E.
 ///
 /// Defaults of PSS/E for empty fields: bus BASKV 0, IDE 1, VM 1, VA 0; load and shunt ID '1', STATUS 1,
 /// powers 0, AREA, ZONE and OWNER 1 (of a load: those of its bus); generator ID '1', PG 0, QG 0, QT 9999, QB
@@ -112,13 +112,13 @@ struct DyrRecord {
   /// Text in place of the bus number (`bus` is 0): an extended bus name, or equipment without a bus (dc
   /// lines, FACTS devices), which has no id.
   std::string equipment{};
-  bool unended = false;  ///< true if no '/' ends it, but the next record or the end of the file
+  bool unended = false;  ///< true if the next record or the end of the file ends it, not a '/'
   /// A quoted, non-numeric parameter. Its value is 0; a model that accepts no text there reports `fault`.
   struct Text {
     std::size_t at;  ///< index into `values`
     Problems fault;  ///< the error, for a model that accepts no text there
   };
-  std::vector<Text> texts{};  ///< its text parameters
+  std::vector<Text> texts{};  ///< text parameters of the record
 };
 /// Treatment of unavailable models of a .dyr. Names are case-insensitive; a user-written model may be given
 /// by its own name or as USRMDL.

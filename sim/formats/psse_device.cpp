@@ -76,7 +76,7 @@ void RawReader::vsc_dc(const Record& first) {
 
 void RawReader::multi_terminal_dc(const Record& first) {
   Fields f(first, file_, problems_);
-  constexpr int most = 1000;  // maximum of converters, dc buses and lines
+  constexpr int most = 1000;  // maximum number of converters, dc buses and lines
   const auto count = [&](std::size_t i, const char* name) {
     return static_cast<std::size_t>(std::clamp(f.integer(i, name, 0), 0, most));
   };

@@ -22,7 +22,7 @@ bool is_comment(const std::string& line) {
 
 /// Expands repeated values of Fortran's free format: 3*0.5 is 0.5 0.5 0.5.
 void write_out_repeats(std::vector<psse::Field>& fields) {
-  constexpr std::size_t most = 1000;  // more than any model's parameters
+  constexpr std::size_t most = 1000;  // more than any model has parameters
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string& text = fields[i].text;
     const auto star = text.find('*');

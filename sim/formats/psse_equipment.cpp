@@ -120,7 +120,7 @@ void RawReader::switched_shunt(const Record& record) {
   if (!on || s.bus < 0) return;
   s.id = switched_id(s.bus, id);
   switching(f, s);
-  network_.shunts.push_back(std::move(s));  // also at 0 Mvar, because a model may refer to it
+  network_.shunts.push_back(std::move(s));  // kept even at 0 Mvar, because a model may refer to it
 }
 
 /// Reads mode, band and steps of a switched shunt. With MODSW 1 the blocks are switched in their order;

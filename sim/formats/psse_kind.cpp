@@ -79,8 +79,8 @@ std::size_t RawReader::faults_as(int version, std::size_t most) {
 std::optional<Problem> other_version(const std::vector<std::string>& lines, const std::string& name,
                                      const RawOptions& options, int read_as,
                                      const std::vector<Problem>& faults) {
-  // Fewer errors are reported one by one. Another version is likely if it has at most 1/kTimesFewer of the
-  // errors.
+  // Fewer than kReportedSingly errors are reported one by one. Another version is likely if it has at most
+  // 1/kTimesFewer of the errors.
   constexpr std::size_t kReportedSingly = 3, kTimesFewer = 10;
   if (faults.size() < kReportedSingly || read_as == 0) return {};
   constexpr std::array kVersions = {33, 34, 35, 32, 31, 30, 29, 28, 27, 26, 25, 24, 23};

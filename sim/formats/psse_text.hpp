@@ -52,8 +52,8 @@ class Fields {
   /// `record` and `problems` must outlive the object. `file`: name in messages.
   Fields(const Record& record, std::string file, Problems& problems)
       : record_(record), file_(std::move(file)), problems_(problems) {}
-  /// Returns the value of field `i`. An invalid value is a problem; a missing field is one if there is no
-  /// `fallback`. The result is then the fallback, or zero without one.
+  /// Returns the value of field `i`. An invalid value is a problem; so is a missing field without `fallback`.
+  /// An invalid or missing field gives the fallback, or zero without one.
   int integer(std::size_t i, const char* name, std::optional<int> fallback = {});
   /// Returns the value of field `i`, as integer() does.
   long double number(std::size_t i, const char* name, std::optional<long double> fallback = {});

@@ -1,7 +1,7 @@
 // Reader of transformers with two and three windings. In per unit of the bus voltages, a winding is an ideal
 // ratio t:1. A two-winding transformer is t1:1, the impedance z, 1:t2; this equals tap = t1/t2 with impedance
-// z t2^2. Three windings meet at a star point. Each has its ratio t:1 and one branch of the star equivalent
-// of the three pairwise impedances. Source: PSS/E Program Operation Manual, "Transformer Data".
+// z t2^2. Three windings meet at a star point. Each winding has its ratio t:1 and one branch of the star
+// equivalent of the three pairwise impedances. Source: PSS/E Program Operation Manual, "Transformer Data".
 #include <algorithm>
 #include <cmath>
 

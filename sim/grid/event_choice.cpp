@@ -107,7 +107,7 @@ void note_shed_loads(Grid& grid, const network::Event& event) {
     before = dead;
   }
   if (remark.places.empty()) return;
-  constexpr std::size_t places = 4;  // as load_grid() shows for other remarks
+  constexpr std::size_t places = 4;  // number of places shown, as in load_grid()
   spdlog::warn("{}", remark_line(remark, places));
   n.remarks.push_back(std::move(remark));
 }

@@ -17,8 +17,8 @@ bool is_circuit(const std::string& name, int number) {
   return error == std::errc() && end == name.data() + name.size() && value == number;
 }
 
-/// Returns the branch in service between two buses with this circuit. Without a match it returns the only
-/// branch between them, else -1.
+/// Returns the branch in service between two buses with this circuit id. If no id matches, returns the only
+/// branch between the buses, or -1 if there are none or several.
 int branch_between(const network::Network& n, int from, int to, int circuit) {
   int only = -1, count = 0;
   for (std::size_t i = 0; i < n.branches.size(); ++i) {

@@ -13,9 +13,10 @@ struct NotThere {
   std::string what;     ///< "bus 999"
 };
 /// Locates the bus and the branch that the controls of a plant measure (Plant::far_place), and evaluates the
-/// measurements. If one is missing, the control measures at its plant instead. Returns the missing ones.
+/// measurements. If a bus or branch is missing, the control measures at its plant instead. Returns the
+/// missing buses and branches.
 std::vector<NotThere> look_far(const Grid& grid, plant::Plant& plant);
-/// The same for every plant; each missing bus or branch becomes a remark.
+/// As above, for every plant; each missing bus or branch becomes a remark.
 void look_far(Grid& grid);
 /// Re-evaluates the remote measurements (Plant::far) after another power flow.
 void measure_far(Grid& grid);

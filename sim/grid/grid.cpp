@@ -193,7 +193,8 @@ class GridMaker {
                                          " parameters: --map-model " + name + "=OTHER"));
     }
   }
-  /// Adds a model for one load, or with id * for every load, of a bus, owner, zone, area or of the grid.
+  /// Adds a model to the loads of a bus, an owner, a zone, an area or the grid that have the record's id; id
+  /// * selects all of them.
   void add_load(const Effect& effect, Reach reach, formats::DyrRecord record, const std::string& where,
                 Problems& problems) {
     constexpr std::array of = {"at bus", "of owner", "in zone", "in area", "anywhere"};

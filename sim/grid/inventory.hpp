@@ -26,7 +26,7 @@ struct UnitCount {
   double mva = 0;                      ///< machine base [MVA]
   bool in_service = true;              ///< status in the case
   std::vector<std::string> models;     ///< names in the .dyr
-  std::vector<std::string> uncovered;  ///< names of those that are unusable
+  std::vector<std::string> uncovered;  ///< names of the unusable models
   bool machine = false;                ///< true if one of the models is a usable machine
   bool classical = false;              ///< true if that machine has no field winding: GENCLS
   int field_records = 0;               ///< number of controls that act through the field voltage

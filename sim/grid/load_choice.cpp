@@ -97,7 +97,7 @@ void compose(const Grid& grid, int load, plant::Block& block, const std::string&
     block.p[static_cast<std::size_t>(block.effect->parameter_index(parameter))] = value;
   };
   const auto cancels = [&](double a, double b, double c, double sum, const char* name) {
-    constexpr double least = 1e-9;  // relative size below which the sum has no significant digits
+    constexpr double least = 1e-9;  // least relative size of a sum with significant digits
     if (std::abs(sum) > least * (std::abs(a) + std::abs(b) + std::abs(c)) || (a == 0 && b == 0 && c == 0))
       return;
     problems.add(fmt::format("the constant-power, -current and -admittance parts of {} cancel", name), where,

@@ -78,7 +78,7 @@ Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dy
   problems.raise();
   take_machines(network, dyd, dyr.string());
   Grid grid = make_grid(std::move(network), dynamics, dyr.string(), conventions, options);
-  constexpr std::size_t places = 4;  // fits on a screen; `simulate --changes` writes all
+  constexpr std::size_t places = 4;  // places shown, to fit on a screen; `simulate --changes` writes all
   for (const network::Remark& remark : grid.network.remarks)
     spdlog::warn("{}: {}", raw.filename().string(), remark_line(remark, places));
   return grid;

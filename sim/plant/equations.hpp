@@ -2,8 +2,8 @@
 // Equations of one plant, for any combination of effects, in the evaluation order common to all integrators:
 //   emf -> (network: current) -> terminal -> machine.electrical -> controls in order of Slot -> afterwards
 //   -> machine.derivative -> non-windup limits
-// The states of a plant are contiguous, machine first. So are the coefficients; the plant's own (Joint)
-// follow those of the machine.
+// The states of a plant are contiguous, machine first. The coefficients are contiguous too; the plant's own
+// coefficients (Joint) follow those of the machine.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -60,11 +60,12 @@ class PlantEquations {
   [[nodiscard]] bool nonlinear() const { return machine_.current != nullptr; }
   /// Whether any state has a non-windup limit.
   [[nodiscard]] bool limited() const { return !limits_.empty(); }
-  /// Number of guard functions. The sign of each shows the side of a discontinuity of the equations.
+  /// Number of guard functions. The sign of each guard function shows on which side of a discontinuity the
+  /// equations are evaluated.
   [[nodiscard]] int guards() const { return guards_; }
 
-  /// Computes the voltage er + j ei seen from the grid behind r + jx [pu, network frame]. m: scratch()
-  /// values, kept for derivative().
+  /// Computes the internal voltage er + j ei behind the impedance r + jx, both as seen from the grid [pu,
+  /// network frame]. m: scratch() values, kept for derivative().
   void emf(const T* c, const T* x, T* m, T& er, T& ei) const {
     machine_.emf(c, x, m, er, ei);
     if (!has_transformer_) return;
@@ -268,7 +269,7 @@ class PlantEquations {
   void nonlinear_through_transformer(const T* c, const T* x, T* m, Signals<T>& s, T& ir, T& ii) const {
     constexpr int kLimit = 20;
     constexpr int kMoreForDuals =
-        std::is_same_v<T, double> ? 0 : 2;  // a dual's derivatives converge after its value
+        std::is_same_v<T, double> ? 0 : 2;  // iterations; a dual's derivatives converge after its value
     constexpr double kNudge = 1e-6, kNearRoot = 1e-9, kLongestMove = 0.3;  // [pu]
     const T* j = c + joint_;
     const T in = T(1.0) / j[joint_ratio];

@@ -22,7 +22,7 @@ template <class T>
 OperatingOf<T> load_operating_point(const Consumer& load, const std::vector<T>& parameters, Complex voltage,
                                     double base_mva, const Conventions& conventions,
                                     std::optional<Complex> regulated) {
-  constexpr double tolerance = 1e-9;  // rounding when derivatives of order 1 cancel: about 1e-14
+  constexpr double tolerance = 1e-9;  // [pu, 1/s]; the rounding error is about 1e-14
   const LoadEquations<T> equations(load);
   const Effect& effect = *load.block.effect;
   OperatingOf<T> o{};

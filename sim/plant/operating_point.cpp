@@ -195,7 +195,7 @@ class Initialiser {
                         "check the model's parameters");
   }
 
-  static constexpr double kTolerance = 1e-9;  // rounding when derivatives of order 1 cancel: about 1e-14
+  static constexpr double kTolerance = 1e-9;  // [pu, 1/s]; the rounding error is about 1e-14
   const Plant& plant_;
   PlantEquations<T> equations_;
   std::vector<Place<T>> places_;

@@ -66,7 +66,7 @@ template <class T>
 struct OperatingOf {
   std::vector<T> c;  ///< coefficients: machine, Joint (equations.hpp), controls
   std::vector<T> x;  ///< states: machine, controls
-  T Efd, Tm;         ///< constant if the exciter or governor slot is empty
+  T Efd, Tm;         ///< [pu]; each is constant if the slot of exciter or governor is empty
   Signals<T> s;      ///< every signal at the operating point
 };
 /// Operating point in double precision.
@@ -82,7 +82,8 @@ Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
 template <class T>
 OperatingOf<T> operating_point_of(const Plant& plant, const std::vector<std::vector<T>>& parameters,
                                   Complex voltage, double base_mva, const Conventions& conventions);
-/// As above, with the generation P, Q given as T [pu on the machine's base]; plant.generation is not read.
+/// As operating_point_of(), with the generation P, Q given as T [pu on the machine's base]; plant.generation
+/// is not read.
 template <class T>
 OperatingOf<T> operating_point_of(const Plant& plant, const std::vector<std::vector<T>>& parameters,
                                   Complex voltage, const T& P, const T& Q, const Conventions& conventions);

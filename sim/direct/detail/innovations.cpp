@@ -26,7 +26,7 @@ class Played {
     Ifd0_ = m_.s.Ifd;
   }
   [[nodiscard]] const States<T>& start() const { return start_; }
-  [[nodiscard]] const T& Ifd0() const { return Ifd0_; }  ///< of the steady state
+  [[nodiscard]] const T& Ifd0() const { return Ifd0_; }  ///< field current of the steady state [pu]
   void evaluate(const States<T>& x, const Voltage<T>& u) {
     std::copy_n(x.begin(), m_.x.size(), m_.x.begin());
     m_.x[0] = x[0] - u[kTheta];

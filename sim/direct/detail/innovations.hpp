@@ -19,7 +19,7 @@ enum Steady { kP0, kQ0, kV0, kTheta0, kSteady };
 struct Gain {
   using State = Eigen::Matrix<double, kMostFlowing, 1>;
   Eigen::Matrix<double, kMostFlowing, kOutputs> onto_states;  ///< onto the states at the next sample
-  Eigen::Matrix<double, kOutputs, kOutputs> whitening;        ///< inverse Cholesky factor of the covariance
+  Eigen::Matrix<double, kOutputs, kOutputs> whitening;        ///< inverse Cholesky factor of cov(innovation)
 };
 /// Result of the filter for given parameters and operating point.
 struct Filtered {

@@ -23,7 +23,7 @@ using Inputs = std::array<double, kInputs>;
 struct Interval {
   Inputs middle = {};              ///< midpoint: cubic through four neighbours, or linear next to a step
   bool leaps = false;              ///< whether the interval contains a step at an unknown time
-  Inputs before = {}, after = {};  ///< with a step: both sides, extrapolated to the midpoint
+  Inputs before = {}, after = {};  ///< with a step: voltage before and after it, extrapolated to the midpoint
 };
 
 /// Correction of the machine's states at times when the played-in signals do not determine them [units of the

@@ -11,7 +11,7 @@ namespace swingbank::sim::direct {
 /// \f$ \psi_d + j\psi_q = flux\, e^{-j\,angle} \f$ and \f$ i_q - j i_d = current\, e^{-j\,angle} \f$.
 struct Turning {
   Eigen::VectorXcd flux, current;
-  Eigen::VectorXd V, speed, P, Ifd;  ///< of the segment; P is the air-gap power [pu]
+  Eigen::VectorXd V, speed, P, Ifd;  ///< time series over the segment; P is the air-gap power [pu]
   Eigen::VectorXd relative;          ///< rotor angle relative to the terminal, minus the initial value [rad]
   std::complex<double> flux0, current0;  ///< at the record's first sample, in the terminal's frame
   double Ifd0 = 0, P0 = 0;               ///< at the record's first sample [pu]

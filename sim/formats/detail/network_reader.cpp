@@ -54,7 +54,8 @@ network::Branch NetworkReader::transformer_of(int from, int to, std::string circ
 
 std::array<Impedance, 3> NetworkReader::star_equivalent(Impedance z12, Impedance z23, Impedance z31) {
   std::array<Impedance, 3> z{(z12 + z31 - z23) / 2.0L, (z12 + z23 - z31) / 2.0L, (z31 + z23 - z12) / 2.0L};
-  // An impedance below the rounding error of the three values that it is computed from is zero.
+  // An impedance counts as zero if it is below the rounding error of the three values from which it is
+  // computed.
   for (Impedance& winding : z)
     if (std::abs(winding) <= 1e-12L * (std::abs(z12) + std::abs(z23) + std::abs(z31))) winding = {};
   return z;
@@ -65,7 +66,7 @@ int NetworkReader::add_star_point(const std::array<int, 3>& ends, const std::str
   network::Bus star{};
   for (std::size_t i = 0; i < 3; ++i) star.star_of[i] = at(ends[i]).number;
   const auto& [first, second, third] = star.star_of;
-  // Numbers above every bus of the file, in the order of the transformers.
+  // Star points are numbered above every bus of the file, in the order of the transformers.
   star.number = index_.rbegin()->first + 1 + static_cast<int>(stars_.size());
   star.name = "STAR " + std::to_string(first) + "-" + std::to_string(second) + "-" + std::to_string(third) +
               " " + circuit;
@@ -97,7 +98,7 @@ int NetworkReader::regulated_by(int bus, int number, const char* field, const Fi
 }
 
 void NetworkReader::add_steps(network::SwitchedShunt& shunt, int count, double each, const Fields& fields) {
-  constexpr int most = 1000;  // maximum steps of a block; more is an error
+  constexpr int most = 1000;  // largest permitted number of steps of a block
   if (count < 0 || count > most)
     problems_.add(
         "bus " + std::to_string(at(shunt.bus).number) + ": a block of " + std::to_string(count) + " steps",

@@ -41,7 +41,7 @@ class NetworkReader {
   void add_bus(network::Bus b, const psse::Fields& fields);
   /// Refuses a branch from a bus to itself. `what`: "a branch".
   void check_ends(const char* what, const network::Branch& b, const psse::Fields& fields);
-  /// Raises an impedance below the least one of a branch, with a remark.
+  /// Replaces a branch impedance up to network::kLeastImpedance by j kLeastImpedance, with a remark.
   void raise_impedance(network::Branch& b, const psse::Fields& fields);
   /// Returns a transformer of impedance z [pu on the system base].
   static network::Branch transformer_of(int from, int to, std::string circuit, bool in_service, Impedance z);
@@ -64,7 +64,7 @@ class NetworkReader {
     const char *mva, *base, *r, *x;
   };
   /// Checks machine base and step-up transformer. A base that is not positive becomes the system base, or is
-  /// a problem where only units are read. `place`: generator in remarks.
+  /// a problem if only units are read. `place`: generator in remarks.
   void check_machine(network::Generator& g, const MachineNames& names, const std::string& place,
                      const psse::Fields& fields);
   /// Makes the generator regulate its own bus to the voltage in the file, with a remark.

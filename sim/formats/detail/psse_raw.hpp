@@ -75,7 +75,7 @@ class RawReader : NetworkReader {
   [[nodiscard]] bool again(const Section& section) const;
   /// Returns the next record that has fields. Lines that begin with '@!' are comments.
   std::optional<Record> next();
-  /// Makes next() return `record`, the last one, again.
+  /// Makes next() return `record` again; it must be the last record that next() returned.
   void put_back(const Record& record) { at_ = static_cast<std::size_t>(record.line) - 1; }
 
   void system_wide(const Record& record);
@@ -144,7 +144,7 @@ class RawReader : NetworkReader {
     std::string where;
   };
   std::vector<Correction> corrections_;
-  std::map<int, std::vector<std::pair<double, Complex>>> tables_;  ///< T and factor, ascending
+  std::map<int, std::vector<std::pair<double, Complex>>> tables_;  ///< points (T, factor), T ascending
 };
 
 /// Returns a problem that names the likely version if the file has at least three errors in the version used

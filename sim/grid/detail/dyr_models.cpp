@@ -173,7 +173,7 @@ std::string columns_text(const Effect& effect) {
 namespace {
 
 /// Reduces a record of a switched shunt to the parameters of its model. Mechanically switched shunts are not
-/// modelled; the record's flags show whether it uses them.
+/// modelled; the record's flags show whether it uses such shunts.
 void without_shunts_beside(formats::DyrRecord& record, const ShuntRecord& layout, std::size_t columns) {
   std::vector<double>& v = record.values;
   if (record.model == layout.of_first) {

@@ -71,13 +71,13 @@ plant::Block transformer_of(const network::Generator& g);
 /// Sets the parameters that PSS/E keeps in the .raw from ZR and ZX.
 void take_from_raw(plant::Block& block, const network::Generator& g);
 /// Checks the block and inserts it into its slot; an occupied slot is a problem. If the source reactance of
-/// the .dyr differs from ZX, it takes precedence and a warning is returned; else "".
+/// the .dyr differs from ZX of the .raw, the .dyr takes precedence and a warning is returned; else "".
 std::string place(plant::Plant& plant, plant::Block block, const RawGenerator& raw, const std::string& where,
                   Problems& problems);
 /// Returns a warning about features that the block's values request and the model lacks, or "".
 std::string remark_on(const plant::Block& block, const std::string& where, const std::string& plant);
-/// Returns true if the machine's derivatives depend on Efd, which is determined by evaluating them. It is
-/// false for a classical machine.
+/// Evaluates the machine's derivatives and returns true if they depend on Efd. The result is false for a
+/// classical machine.
 bool reads_field_voltage(const Effect& machine);
 /// Returns true if a control in this slot acts only through the field voltage.
 bool acts_on_field(Slot slot);
