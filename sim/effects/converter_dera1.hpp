@@ -167,7 +167,7 @@ struct Model : shared::ControlledCurrent<Model> {
   static constexpr auto dyr_columns = shared::columns_to<parameter_count - 1>();
   static constexpr double kRateLag = 0.01;        ///< time constant of the reference's rate limiter [s]
   static constexpr double kFrequencyBand = 1e-5;  ///< width beyond fl and fh over which a trip sets in [pu]
-  /// The first coefficients are the parameters themselves; Vref0 becomes the reference.
+  /// The first coefficients are the parameters themselves. Vref0 = 0 is replaced by the initial voltage.
   enum C {
     iTrv = parameter_count,
     iTfreq,
@@ -177,14 +177,14 @@ struct Model : shared::ControlledCurrent<Model> {
     iTg,
     iTv,
     per_angle,
-    kig,       ///< Kig at freqFlag 1
+    kig,       ///< Kig if freqFlag = 1
     per_low,   ///< 1/(Vl1 - Vl0)
     per_high,  ///< 1/(Vh0 - Vh1)
     f_under,   ///< frequency deviations that cause a trip [pu]
     f_over,
     none,
     pref,
-    qref,     ///< for pfFlag 0
+    qref,     ///< reactive power reference for pfFlag = 0
     tangent,  ///< tangent of the power factor angle
     start_p,  ///< both commands at the operating point
     start_q,
@@ -298,7 +298,8 @@ struct Model : shared::ControlledCurrent<Model> {
   static std::string steady(const T*, T* c, Signals<T>& s, T* x);
 
  private:
-  /// Returns the measured ordered power, input of its regulator and of the power factor control [pu].
+  /// Returns the ordered power after the measurement lag Tp, which is the input of the power regulator and of
+  /// the power factor control [pu].
   template <class T>
   static T measured(const T* c, const T* x, T& dx) {
     return lag(c[iTp], x[Pf], select(c[iTpord] > T(0.0), x[Pord], clamp(x[Pset], c[Pmin], c[Pmax])), dx);

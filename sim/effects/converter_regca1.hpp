@@ -73,7 +73,7 @@ struct Model : shared::ControlledCurrent<Model> {
       kTfreq};
   static constexpr int dyr_columns[] = {Lvplsw, Tg,    Rrpwr, Brkpt, Zerox,  Lvpl1,  Volim, Lvpnt1,
                                         Lvpnt0, Iolim, Tfltr, Khv,   Iqrmax, Iqrmin, Accel};
-  static constexpr double kFollow = 2e-3;  ///< time constant with which Ip follows an LVPL below it [s]
+  static constexpr double kFollow = 2e-3;  ///< time constant with which Ip follows LVPL while Ip > LVPL [s]
   enum C {
     iTg,
     rise,

@@ -3,9 +3,9 @@
 //
 // PSS/E computes the acceleration limiter's output as the stroke of the previous step plus Ka (Aset -
 // acceleration) dt. The stroke thus rises no faster than Ka (Aset - acceleration). Here the state `accel`
-// imposes this rate independent of the step size. It follows the lower of the other two outputs, kAbove above
-// it, with the time constant kFollow. A stroke that rises slower than kAbove/kFollow thus never reaches
-// `accel`.
+// imposes this rate independent of the step size. It follows the lower output of the other two controllers,
+// at the distance kAbove above it, with the time constant kFollow. A stroke that rises slower than
+// kAbove/kFollow thus never reaches `accel`.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"
@@ -123,7 +123,7 @@ struct Model {
       {"Rdown", "Rdown", "pu/s", -99.0, -99.0, 0.0, kNoNullValue, "load limit's fastest fall"}};
   static constexpr auto dyr_columns = shared::columns_to<Rdown>();
   static constexpr double kAbove = 0.002;   ///< distance of `accel` above the other outputs [pu of stroke]
-  static constexpr double kFollow = 0.002;  ///< time constant with which `accel` follows them [s]
+  static constexpr double kFollow = 0.002;  ///< time constant with which `accel` follows these outputs [s]
   static constexpr double kFullLoad = 1.0;  ///< upper limit of the load limiter's output [pu of stroke]
   enum C {
     droop,
@@ -214,7 +214,7 @@ struct Model {
     c[kpload] = p[Kpload];
     c[kiload] = p[Kiload];
     c[limit] = p[Ldref] / p[Kturb] + p[Wfnl];
-    c[loss] = select(p[Dm] < zero, zero, p[Dm]);  // at Dm = 0 with the derivative of Dm > 0
+    c[loss] = select(p[Dm] < zero, zero, p[Dm]);  // at Dm = 0 a dual number has the derivative for Dm > 0
     c[exponent] = select(p[Dm] < zero, p[Dm], zero);
     c[fuel_speed] = p[Flag];
     c[ropen] = p[Ropen];

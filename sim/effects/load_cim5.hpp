@@ -284,7 +284,7 @@ struct Model {
   /// Solves for fluxes and slip with saturation by Newton's method; `x`: unsaturated values as the start.
   template <class T>
   static void saturate(const T* c, const Phasor<T>& v, const T& power, T* x) {
-    constexpr int n = 5, steps = 12;  // enough for an initial error of a few per cent, and one more for duals
+    constexpr int n = 5, steps = 12;  // enough for initial errors of a few per cent; one more for duals
     constexpr double nudge = 1e-7;
     const auto rest = [&](const T* at, T* f) {
       const Phasor<T> i = stator(c, at, v);

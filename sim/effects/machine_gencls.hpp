@@ -2,10 +2,11 @@
 // GENCLS: the classical machine.
 //
 // Conventions. PSS/E divides Pm - D w - Pe by 1 + w, so all three are powers. Integrated with PSS/E's own
-// time steps, this reproduces its record psse-test01 (D = 2) within 0.0001 degrees, the last digit of the
-// record. With all three as torques the error is 0.0005 degrees; with Pe not divided it is 0.115 degrees.
-// ANDES uses torques (tests/reference/andes). There is no speed voltage, because the model has no flux
-// linkages. Pe includes the loss in Ra; this is unverified, because no available record of PSS/E has Ra.
+// time steps, these equations reproduce PSS/E's record psse-test01 (D = 2) within 0.0001 degrees, the last
+// digit of the record. With three torques in place of powers the error is 0.0005 degrees; with Pe not divided
+// by 1 + w the error is 0.115 degrees. ANDES uses torques (tests/reference/andes). There is no speed voltage,
+// because the model has no flux linkages. Pe includes the loss in Ra; this is unverified, because no
+// available record of PSS/E has Ra.
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/direct/swing.hpp"

@@ -1,10 +1,10 @@
 #pragma once
 // GENROE: round-rotor machine, one field and three damper circuits, exponential saturation.
 //
-// Conventions are those of GENROU. Integrated with PSS/E's own time steps and without damping, this
-// reproduces its records psse_powersimulationsdynamics/GENROE within 0.0002 degrees. Their .dyr has D = 0.05,
-// which gives an error of 0.002 degrees; no available record verifies the damping. The error is 0.009 degrees
-// with speed voltage and 0.047 degrees with mechanical torque in place of power.
+// Conventions are those of GENROU. Integrated with PSS/E's own time steps and without damping, the equations
+// reproduce PSS/E's records psse_powersimulationsdynamics/GENROE within 0.0002 degrees. Their .dyr has D =
+// 0.05, which gives an error of 0.002 degrees; no available record verifies the damping. The error is 0.009
+// degrees with speed voltage and 0.047 degrees with mechanical torque in place of power.
 #include "sim/effects/detail/round_rotor.hpp"
 
 namespace swingbank::sim::effects::machine_genroe {

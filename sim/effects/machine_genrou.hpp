@@ -2,9 +2,10 @@
 // GENROU: round-rotor machine, one field and three damper circuits.
 //
 // Conventions. PSS/E sets the mechanical power: it divides Pm - D w by 1 + w, but not Te. There is no speed
-// voltage. Integrated with PSS/E's own time steps, this reproduces its records psse/GENROU within 0.0002
-// degrees. The error is 0.009 degrees with speed voltage, 0.045 degrees with mechanical torque in place of
-// power, and 0.002 degrees without damping. ANDES uses torques and no speed voltage (tests/reference/andes).
+// voltage. Integrated with PSS/E's own time steps, these equations reproduce PSS/E's records psse/GENROU
+// within 0.0002 degrees. The error is 0.009 degrees with speed voltage, 0.045 degrees with mechanical torque
+// in place of power, and 0.002 degrees without damping. ANDES uses torques and no speed voltage
+// (tests/reference/andes).
 #include "sim/direct/round_rotor.hpp"
 #include "sim/effects/detail/round_rotor.hpp"
 

@@ -1,9 +1,9 @@
 #pragma once
 // GENSAE: salient-pole machine, one field and one damper circuit in each axis, exponential saturation.
 //
-// Conventions are those of GENROU. Integrated with PSS/E's own time steps, this reproduces its record
-// psse_powersimulationsdynamics/GENSAE within 0.0001 degrees over 10 s. The error is 0.0016 degrees with
-// speed voltage and 0.016 degrees with mechanical torque in place of power. The record has D = 0; no
+// Conventions are those of GENROU. Integrated with PSS/E's own time steps, the equations reproduce PSS/E's
+// record psse_powersimulationsdynamics/GENSAE within 0.0001 degrees over 10 s. The error is 0.0016 degrees
+// with speed voltage and 0.016 degrees with mechanical torque in place of power. The record has D = 0; no
 // available record verifies the damping.
 #include "sim/effects/detail/salient_pole.hpp"
 #include "sim/effects/detail/value_check.hpp"

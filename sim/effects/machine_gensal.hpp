@@ -1,9 +1,9 @@
 #pragma once
 // GENSAL: salient-pole machine, one field and one damper circuit in each axis.
 //
-// Conventions are those of GENROU. Integrated with PSS/E's own time steps, this reproduces voltages and speed
-// of its record psse/EXST1 (D = 4) within 0.03 % of their swing. The error is 3 % with speed voltage, 1.8 %
-// with mechanical torque in place of power, and 15 % without damping. The angle of the record
+// Conventions are those of GENROU. Integrated with PSS/E's own time steps, the equations reproduce voltages
+// and speed of PSS/E's record psse/EXST1 (D = 4) within 0.03 % of their swing. The error is 3 % with speed
+// voltage, 1.8 % with mechanical torque in place of power, and 15 % without damping. The angle of the record
 // psse_powersimulationsdynamics/GENSAL (D = 0) is reproduced within 0.0002 degrees over 10 s. The error is
 // 0.0009 degrees with speed voltage and 0.017 degrees with torque.
 #include "sim/effects/detail/salient_pole.hpp"

@@ -145,7 +145,7 @@ struct Model {
   };
   enum X { w1, w2, y1, w3, w4, y2, ramp, lead1 = ramp + kRampLags, lead2, lead3 };
   /// Weight in step control: KS1 and the leads amplify every state by some tens, and the exciter's gain
-  /// follows.
+  /// multiplies the result.
   static constexpr double kGainWeight = 10.0;
   static constexpr State states[] = {
       {"w1", "pu", "first washout of the first input", kGainWeight, -1, -1, {iTw1}},

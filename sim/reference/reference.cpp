@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSameTime = 1e-9;  ///< times that differ by less are equal [s]
 
-constexpr double kNoAngle = 1e-9;  ///< at lower voltages the angle is undefined, only rounding [pu]
+constexpr double kNoAngle = 1e-9;  ///< voltage below which the angle is only rounding error [pu]
 
 struct FreeContext {
   void operator()(SUNContext c) const { SUNContext_Free(&c); }
@@ -173,9 +173,9 @@ class Recorder {
   const ReferencePlants& plants_;
   const ReferenceOptions& options_;
   ReferenceRun& run_;
-  std::vector<double> angle_;             ///< of each bus [rad]; the last value while V = 0
-  std::vector<Signals<double>> signals_;  ///< of each unit, at the present sample
-  std::vector<Complex> current_;          ///< of each unit, into the grid
+  std::vector<double> angle_;             ///< voltage angle of each bus [rad]; the last value while V = 0
+  std::vector<Signals<double>> signals_;  ///< signals of each unit at the present sample
+  std::vector<Complex> current_;          ///< current of each unit into the grid
 };
 
 void operating_values(const grid::Grid& grid, const ReferencePlants& plants, double* y) {

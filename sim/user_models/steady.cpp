@@ -44,8 +44,8 @@ class Search {
     return verdict();
   }
 
-  /// Returns the solution u of J u = `by`. If `by` is the derivative of the residual, -u is that of the
-  /// unknowns.
+  /// Returns the solution u of J u = `by`. If `by` is the derivative of the residual, -u is the derivative of
+  /// the unknowns.
   [[nodiscard]] Vector follow(const Vector& by) { return solve(by); }
   template <class T>
   static std::vector<T> residual_of(const Definition& user_model, const T* c, const T* x,

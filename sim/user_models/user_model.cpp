@@ -55,7 +55,7 @@ std::string steady_of(const void* data, const T* p, T* c, Signals<T>& s, T* x) {
   const Definition& user_model = of(data);
   if constexpr (kLanesOf<T> == 0) {
     return steady(user_model, p, c, s, x);
-  } else {  // for each element of the batch
+  } else {  // for each element of the SIMD batch
     using One = decltype(lane_of(*p, 0));
     for (int lane = 0; lane < kLanesOf<T>; ++lane) {
       std::vector<One> one_p, one_c(static_cast<std::size_t>(user_model.code.coefficients), One(0.0)),

@@ -52,8 +52,8 @@ struct BehindImpedance : ControlledCurrent<Model> {
                                  kNoNullValue,
                                  "source reactance",
                                  literature::own("InterPSS's for aggregated converters")};
-  /// Fraction of Imax below which the limit of the current without priority follows the tangent, not the
-  /// circle.
+  /// Fraction of Imax. Where the circle Ip^2 + Iq^2 = Imax^2 limits the current without priority to less than
+  /// this fraction, a tangent replaces the circle.
   static constexpr double kTangent = 0.05;
 
  protected:

@@ -24,7 +24,7 @@ struct CompoundSource {
     sincos(p.THETAP * T(constants::degree), sine, cosine);
     c[voltage_r] = p.KP * cosine;
     c[voltage_i] = p.KP * sine;
-    c[current_r] = T(0.0) - c[voltage_i] * p.XL;  // of j (KI + KP' XL)
+    c[current_r] = T(0.0) - c[voltage_i] * p.XL;  // real part of j (KI + KP' XL)
     c[current_i] = p.KI + c[voltage_r] * p.XL;
     c[commutation] = p.KC;
     c[most] = p.VBMAX;

@@ -147,7 +147,7 @@ struct ElectricalControl {
   };
   /// Computes both commands: s.Tm (active) and s.Efd (reactive). A Model passes three functions. `total` adds
   /// the ride-through contribution to the reactive current. `active` maps the ordered current to the active
-  /// current. `active_limit` maps the upper limit of the active current to the one that applies.
+  /// current. `active_limit` maps the upper limit of the active current to the limit that applies.
   template <class T, class Total, class Active, class ActiveLimit>
   static void commands(const T* c, const T* x, const T& measured, const T& regulated, const T& runs,
                        const T& wanted, const Limits<T>& limits, const Total& total, const Active& active,

@@ -76,7 +76,7 @@ inline constexpr Parameter
 
 // Groups of parameters with the same order in every electrical control, from index `first` on.
 
-/// Voltage dip, measured voltage and ride-through current Iqv.
+/// Parameters of the voltage dip, the measured voltage and the ride-through current Iqv.
 template <int first>
 struct RideThrough {
   enum { Vdip = first, Vup, Trv, dbd1, dbd2, Kqv, Iqh1, Iql1, Vref0 };
@@ -84,7 +84,7 @@ struct RideThrough {
                                               record::dbd1, record::dbd2, record::Kqv,
                                               record::Iqh1, record::Iql1, record::Vref0};
 };
-/// Measured power, limits and regulators of Q and V.
+/// Parameters of the measured power, and of the limits and regulators of Q and V.
 template <int first>
 struct Regulators {
   enum { Tp = first, Qmax, Qmin, Vmax, Vmin, Kqp, Kqi, Kvp, Kvi };
@@ -92,7 +92,7 @@ struct Regulators {
                                             record::Vmax, record::Vmin, record::Kqp,
                                             record::Kqi,  record::Kvp,  record::Kvi};
 };
-/// Lag of the reactive current, ordered power and largest current.
+/// Parameters of the reactive current's lag, the ordered power and the largest current.
 template <int first>
 struct Orders {
   enum { Tiq = first, dPmax, dPmin, Pmax, Pmin, Imax, Tpord };

@@ -84,8 +84,8 @@ struct InverseTime {
     const T at = clamp(i, c[i1], c[i3]);
     return select(at < c[i2], c[t1] + c[slope12] * (at - c[i1]), c[t2] + c[slope23] * (at - c[i2]));
   }
-  /// Returns the timer's derivative at the limited quantity [pu]. After expiry it moves away from 1, so that
-  /// rounding in the integrator cannot reset it.
+  /// Returns the timer's derivative [1/s]; `limited`: limited quantity [pu]. After expiry the timer moves
+  /// away from 1, so that rounding in the integrator cannot reset it.
   template <class T>
   static T pace(const T* c, const T& timer, const T& limited) {
     const T one(kOperated), i = limited * c[irated];

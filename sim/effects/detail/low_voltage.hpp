@@ -5,8 +5,9 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Returns the remaining fraction of a constant power at voltage v > 0, divided by v^2, which is finite at
-/// low voltage. With x = v/threshold the fraction is 2 x^2 up to x = 0.5 and 1 - 2 (1 - x)^2 up to x = 1.
+/// Returns the remaining fraction of a constant power at voltage v > 0, divided by v^2; the quotient is
+/// finite at low voltage. With x = v/threshold the fraction is 2 x^2 up to x = 0.5 and 1 - 2 (1 - x)^2 up to
+/// x = 1.
 template <class T>
 inline T power_per_square(const T& v, const T& threshold) {
   const T one(1.0), two(2.0), half = T(0.5) * threshold;

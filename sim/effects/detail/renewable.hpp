@@ -48,7 +48,7 @@ inline constexpr double kFading = 1e-3;  ///< time over which values stored afte
 template <class T>
 T timer(const T& dip, const T& whole, const T& x, T& dx) {
   const T zero(0.0), one(1.0);
-  dx = dip * (whole - x) * T(1.0 / kFollow) - (one - dip);  // to the state's lower limit
+  dx = dip * (whole - x) * T(1.0 / kFollow) - (one - dip);  // after the dip, x decreases to its lower limit
   return (one - dip) * clamp(x * T(1.0 / kFading), zero, one);
 }
 

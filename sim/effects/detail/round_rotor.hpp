@@ -1,6 +1,6 @@
 #pragma once
-// Round-rotor machine of GENROU and GENROE: one field and three damper circuits. The two differ in the
-// saturation of the subtransient flux, QuadraticSaturation or ExponentialSaturation.
+// Round-rotor machine of GENROU and GENROE: one field and three damper circuits. The two effects differ in
+// the saturation of the subtransient flux, QuadraticSaturation or ExponentialSaturation.
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
 #include "sim/core/saturation.hpp"

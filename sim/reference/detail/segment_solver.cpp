@@ -22,10 +22,10 @@ void require(int flag, const char* call) {
 /// types, and all files of a module may be compiled as one unit.
 namespace segments {
 
-constexpr int kMinimumDegree = 0;  ///< KLU's minimum-degree ordering; less fill-in than its default here
+constexpr int kMinimumDegree = 0;  ///< KLU's minimum-degree ordering; less fill-in here than KLU's default
 /// Relative change of the leading coefficient a (system.hpp) that triggers a new factorisation. IDA's 0.25 is
-/// for expensive matrices. Here a factorisation costs as much as two residuals, and Newton's method then ends
-/// with smaller residuals.
+/// for expensive matrices. Here a factorisation costs only as much as two residual evaluations, and with new
+/// factors Newton's method ends with smaller residuals.
 constexpr double kFactorAnew = 0.1;
 /// Number of steps after which the units' derivatives are recomputed, as in CVODE. They are recomputed
 /// earlier after a failed step, which may have crossed a limit, or if Newton's method does not converge.
@@ -45,7 +45,7 @@ struct Problem {
   long steps = -kStepsPerJacobian, failures = 0;  ///< IDA's counts when the derivatives were last computed
 
   /// Whether the units' derivatives must be recomputed when IDA requests a matrix with leading coefficient
-  /// `now`. IDA requests one with an unchanged coefficient if Newton's method has not converged.
+  /// `now`. IDA requests a matrix with an unchanged coefficient if Newton's method has not converged.
   bool old(double now) {
     constexpr double kSame = (1.0 - kFactorAnew) / (1.0 + kFactorAnew);
     long count = 0, failed = 0, rejected = 0;

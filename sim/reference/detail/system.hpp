@@ -32,7 +32,7 @@ class ReferencePlants {
     std::optional<plant::LoadEquations<double>> consumption;
     std::optional<plant::LoadEquations<D8>> consumption_sensitivities;
     int bus;
-    /// Remote buses whose voltages it needs: the regulated bus, then both ends of the measured branch.
+    /// Remote buses whose voltages the unit needs: the regulated bus, then both ends of the measured branch.
     std::vector<int> seen;
     network::BranchEnd flow{};  ///< measured end of the branch, whose buses are the last two of `seen`
     int kind;                   ///< equal for units with the same effects
@@ -68,7 +68,7 @@ class ReferenceSystem {
   /// Returns the number of the bus's island.
   [[nodiscard]] int island(int bus) const { return island_[static_cast<std::size_t>(bus)]; }
   [[nodiscard]] bool tripped(std::size_t unit) const { return connected_[unit] == 0.0; }
-  /// Returns the connected part of a unit, 0 to 1.
+  /// Returns the connected fraction of a unit, 0 to 1.
   [[nodiscard]] double connected(std::size_t unit) const { return connected_[unit]; }
 
   /// Solves the algebraic equations for the bus voltages by Newton's method, with the states and start
@@ -130,7 +130,7 @@ class ReferenceSystem {
   std::vector<bool> bolted_;
   std::vector<int> open_;                    ///< branches without current, sorted
   std::vector<int> island_;                  ///< island of each bus
-  std::vector<double> connected_;            ///< connected part of each unit, 0 to 1
+  std::vector<double> connected_;            ///< connected fraction of each unit, 0 to 1
   std::vector<network::Setpoint> setpoint_;  ///< set-point changes of each unit
   Rows y_;                                   ///< network without ties; rows of bolted buses are empty
   std::vector<network::Tie> ties_;

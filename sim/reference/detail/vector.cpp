@@ -32,7 +32,7 @@ void scale(realtype a, N_Vector x, N_Vector z) {
 
 void fill(realtype a, N_Vector z) { std::fill_n(data(z), length(z), a); }
 
-/// Adds four terms at a time, so that the sum is written once for them.
+/// Adds four terms at a time, so that the sum is written to memory only once for the four terms.
 int linear_combination(int terms, realtype* factors, N_Vector* vectors, N_Vector z) {
   double* pz = data(z);
   const sunindextype n = length(z);

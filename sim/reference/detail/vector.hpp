@@ -1,5 +1,5 @@
 #pragma once
-// SUNDIALS vectors compiled with this build's instruction set. Debian's are compiled for the baseline
+// SUNDIALS vectors compiled with this build's instruction set. Debian's vectors are compiled for the baseline
 // processor, without fused operations, and took half of a run's time.
 #include <sundials/sundials_nvector.h>
 
