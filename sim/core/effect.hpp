@@ -8,7 +8,7 @@
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
 //   check()                       refuses values at which the equations fail, such as a divisor of 0
 //   unphysical()                  optional: refuses random draws in an order that no machine has (Xd < X'd)
-//   prepare<T>()                  computes coefficients from parameters, so that the loop has no division
+//   prepare<T>()                  computes coefficients from parameters, so that no time step divides
 //   equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
 //   converter                     of a source, optional: true if it is a controlled current source
@@ -170,8 +170,8 @@ struct Conventions {
 };
 
 /// Remote measurement of a plant control: voltage of the regulated bus, and current and power of the selected
-/// branch [pu], positive out of the plant. If the parameters select no bus or branch, the values are those of
-/// the plant's grid side, where the plant's records are measured.
+/// branch [pu], positive out of the plant. If the parameters select no bus or branch, the values are measured
+/// at the plant's grid side, as are the plant's records.
 template <class T>
 struct Far {
   T Vr{}, Vi{}, Ir{}, Ii{}, P{}, Q{};

@@ -33,8 +33,8 @@ class MachinePlayback {
   [[nodiscard]] std::size_t fluxes() const { return machine_.states.size() - kAngleAndSpeed; }
   [[nodiscard]] Index outputs() const { return static_cast<Index>(steps_ * compared()); }
 
-  /// Returns the residuals over the segment [pu]. `offset`: initial rotor angle minus that of the steady
-  /// state [rad]; `flux`: fluxes at the segment's start.
+  /// Returns the residuals over the segment [pu]. `offset`: initial rotor angle minus its steady-state value
+  /// [rad]; `flux`: fluxes at the segment's start.
   template <class T>
   std::vector<T> residuals(const std::vector<T>& p, const T& offset, const std::vector<T>& flux) const {
     Machine<T> m = machine(p);

@@ -88,7 +88,8 @@ struct Axes {
 double se(double a, double b, double psi) { return b * std::pow(std::max(psi - a, 0.0), 2) / psi; }
 
 /// Xd and saturation. The field current above E'q is (Xd - X'd)(i_d - kd td) + psi_d Se, with kd = (X'd -
-/// X'')/(X'd - Xl)^2 and td = psi_1d + (X'd - Xl) i_d - E'q. It is linear in Xd - X'd and B for a given A.
+/// X'')/(X'd - Xl)^2 and td = psi_1d + (X'd - Xl) i_d - E'q. This equation is linear in Xd - X'd and B for a
+/// given A.
 struct Field {
   double dXd = 0, A = 0, B = 0, left = 0;
 };

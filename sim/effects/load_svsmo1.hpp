@@ -258,7 +258,7 @@ struct Model {
     return clamp(much * T(1.0 / renewable::kDipBand), T(0.0), T(1.0));
   }
   /// Returns 1 if the regulator acts on its error, 0 within the dead-band. The transition at the edges of the
-  /// dead-band has the width kWakingBand, less than that of voltage thresholds.
+  /// dead-band has the width kWakingBand, less than the width kDipBand at voltage thresholds.
   template <class T>
   static T awake(const T* c, const T& error, const T& x, T& dx) {
     const T zero(0.0), one(1.0), size = renewable::larger(error, zero - error), per_edge(1.0 / kWakingBand);

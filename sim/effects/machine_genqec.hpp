@@ -98,7 +98,7 @@ struct Model {
                                      {"psi1d", "pu", "d-axis damper flux", J::kFluxWeight},
                                      {"psi2q", "pu", "second q-axis damper flux", J::kFluxWeight}};
   static constexpr int raw_resistance = -1, raw_reactance = -1;
-  /// Coefficients of GENTPJ, which its solution requires, then those of the rotor circuits.
+  /// Coefficients of GENTPJ, which GENTPJ's functions require, then the coefficients of the rotor circuits.
   enum C { gd, gq, xdl, xql, dXd, dXq, kd, kq, kw, last };
   static constexpr int own = J::coefficients, coefficients = own + last;
   /// Scratch values of GENTPJ, with kd as the factor of both axes; then psi''d, psi''q, td.

@@ -232,8 +232,8 @@ struct Model {
     const double codes[] = {1.0, 3.0, 4.0, 5.0};
     for (int i = 0; i < 4; ++i) w[i] = select(square(code - T(codes[i])) < T(0.25), T(1.0), T(0.0));
   }
-  /// Distributes N stages of M lags to kRampLags lags in series; the first lag of a stage has the lead, and
-  /// unused ones pass their input.
+  /// Distributes N stages of M lags to kRampLags lags in series. The first lag of each stage also has the
+  /// lead; unused lags pass their input.
   template <class T>
   static void ramp_tracking(const T* p, T* c) {
     const T zero(0.0);

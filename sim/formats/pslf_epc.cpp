@@ -117,7 +117,7 @@ void EpcReader::divide() {
   if (options_.needs_frequency && !(options_.frequency_hz.value_or(0) > 0))
     problems_.add("no frequency", file_, "an .epc contains no frequency",
                   "give --frequency-hz (in a config: frequency_hz), 50 or 60 Hz");
-  problems_.raise();  // the rest requires these values
+  problems_.raise();  // reading the sections requires these values
   network_.base_mva = static_cast<double>(base_);
   network_.frequency = options_.frequency_hz.value_or(1.0);
 }

@@ -448,7 +448,7 @@ class GridMaker {
   std::vector<ShuntModel> shunt_models_;
   struct Alike {
     Problem first;
-    std::vector<int> lines;  ///< lines of the other records
+    std::vector<int> lines;  ///< lines of the other records with this error
   };
   std::vector<Alike> alike_;                                 ///< records that their model does not accept
   std::map<std::pair<std::string, bool>, Unknown> unknown_;  ///< key: name, and true for a user-written model

@@ -55,8 +55,8 @@ Grid make_grid(network::Network network, const std::vector<formats::DyrRecord>& 
 /// survey_dyd; its machine base, Ra and X'd take precedence over those of the network's generators.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const CaseOptions& options);
-/// The same with options of the .dyr only. `frequency_hz`: system frequency [Hz] if the network's file has
-/// none.
+/// As load_grid() above, with options of the .dyr only. `frequency_hz`: system frequency [Hz] if the
+/// network's file has none.
 Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dyr, Conventions conventions,
                const formats::DyrOptions& options = {}, std::optional<double> frequency_hz = {});
 

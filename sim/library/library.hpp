@@ -16,9 +16,9 @@ namespace swingbank::sim::library {
 std::span<const Effect> compiled_effects();
 
 /// The compiled effects and those added to this object. A copy shares the effects of its original at the time
-/// of copying; later additions to one do not appear in the other. An added effect lives as long as the last
-/// library that contains it. Code that stores a `const Effect*` must therefore also store a copy of the
-/// library, or must not outlive the library's owner.
+/// of copying; effects added later to the original do not appear in the copy, and vice versa. An added effect
+/// lives as long as the last library that contains it. Code that stores a `const Effect*` must therefore also
+/// store a copy of the library, or must not outlive the library's owner.
 class EffectLibrary {
  public:
   /// Returns the effect of that name, case-insensitive, or nullptr.

@@ -1,6 +1,6 @@
 #pragma once
-// Variants: effects that differ from another one by details that a record hardly shows. A header declares a
-// variant with `variant_of`, the name of the other effect. The search for a missing effect then tries only
+// Variants: effects that differ from another effect in details that a record hardly shows. A header declares
+// a variant with `variant_of`, the name of the other effect. The search for a missing effect then tries only
 // the other effect.
 #include "sim/core/effect.hpp"
 

@@ -40,7 +40,7 @@ void settle_duplicates(Network& network, const std::vector<Duplicate>& duplicate
 /// - Reactive limits with q_min above q_max are removed.
 /// `where(i)`: place of generator i in the file.
 void settle_generators(Network& network, const std::function<std::string(std::size_t)>& where);
-/// Makes the bus of the largest generator (by MVA) the slack bus of every island that has no slack bus. Takes
+/// In every island without a slack bus, makes the bus of the largest generator (by MVA) the slack bus. Takes
 /// islands without a generator out of service (type 4). Adds remarks.
 void settle_islands(Network& network);
 

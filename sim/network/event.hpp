@@ -79,7 +79,7 @@ struct Segment {
   std::vector<Setpoint> setpoints = {};  ///< reference changes in force
 };
 /// Returns the segments in order of time; simultaneous switchings form one segment. `switching_times`:
-/// further switching times, those of effects [s]. Throws InputError if an event ends before it starts, starts
+/// further switching times, from effects [s]. Throws InputError if an event ends before it starts, starts
 /// before 0, names missing equipment, or faults a bus twice at the same time.
 std::vector<Segment> segments(const Event& event, const Network& network,
                               const std::vector<double>& switching_times = {});

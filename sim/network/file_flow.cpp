@@ -46,7 +46,8 @@ namespace {
 
 /// Voltages and the power mismatch of every bus. A file's voltages have too few digits for the current of a
 /// tie. Among buses joined by ties, only one keeps the file's voltage, preferably a bus with a generator. The
-/// voltages of the others are computed from it, and their mismatches are moved to it.
+/// voltages of the other joined buses are computed from this voltage, and their mismatches are moved to this
+/// bus.
 struct FileSolution {
   std::vector<Complex> voltage, left;
 };

@@ -153,8 +153,8 @@ class Newton {
       if (role(static_cast<int>(i)).kind != Role::out && std::abs(v_[i]) < least) return true;
     return false;
   }
-  /// Returns the angle of every bus if no power flows: that of its slack bus plus the phase shifts in between
-  /// [rad].
+  /// Returns the angle of every bus if no power flows: the angle of its slack bus plus the phase shifts in
+  /// between [rad].
   [[nodiscard]] std::vector<double> angles_of_shifts() const {
     std::vector<std::vector<std::pair<int, double>>> next(n_.buses.size());
     for (const Branch& b : n_.branches)
@@ -370,9 +370,9 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
            ", or keep the file's voltages (--start file)"});
 }
 
-/// Shares the power of a bus among its generators, without limits. If the power is nearly that of the file,
-/// each generator keeps its P and Q of the file, as in PSS/E, and the difference is shared by MVA. Otherwise
-/// the whole power is shared by MVA.
+/// Shares the power of a bus among its generators, without limits. If the power is nearly the sum of the
+/// file's values, each generator keeps its P and Q of the file, as in PSS/E. The difference is then shared by
+/// MVA. Otherwise the whole power is shared by MVA.
 void share_freely(const Network& n, const std::vector<std::size_t>& units, double mva, Complex power,
                   std::vector<Complex>& generation) {
   Complex rest = power;

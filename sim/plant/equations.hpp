@@ -84,7 +84,7 @@ class PlantEquations {
   }
 
   /// Computes Vr, Vi at the terminal and Vpr, Vpi at the grid's side from er + j ei of emf() and the current
-  /// Ir, Ii into the grid. Ir, Ii become the machine's current.
+  /// Ir, Ii into the grid. On return, Ir, Ii are the machine's current.
   void voltages(const T* c, const T& er, const T& ei, Signals<T>& s) const {
     const T* j = c + joint_;
     if (!has_transformer_) {

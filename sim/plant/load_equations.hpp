@@ -37,8 +37,8 @@ class LoadEquations {
   int joint_, states_;
 };
 
-/// Initialises a load at the voltage of its bus and, if different, of the regulated bus [pu]. Throws
-/// InputError if the load has no steady state there. T: double or a dual.
+/// Initialises a load at the voltage of its bus and at the voltage of its regulated bus [pu], if it regulates
+/// another bus. Throws InputError if the load has no steady state there. T: double or a dual.
 template <class T>
 OperatingOf<T> load_operating_point(const Consumer& load, const std::vector<T>& parameters, Complex voltage,
                                     double base_mva, const Conventions& conventions,

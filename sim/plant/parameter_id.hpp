@@ -64,7 +64,8 @@ ParameterName read_parameter_name(std::string_view text);
 /// Returns the name of a plant's parameter.
 ParameterName parameter_name(const Plant& plant, ParameterId id);
 /// Returns the parameters of `among` that match the texts: "SEXS.K", or "K" of any block. A text that matches
-/// none, or only those of an earlier text, is a problem at `where` that states `why` and lists all names.
+/// no parameter, or only parameters of an earlier text, is a problem at `where` that states `why` and lists
+/// all names.
 std::vector<ParameterId> find_parameters(const Plant& plant, const std::vector<ParameterId>& among,
                                          const std::vector<std::string>& texts, const std::string& where,
                                          const std::string& why, Problems& problems);

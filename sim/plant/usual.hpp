@@ -24,8 +24,8 @@ struct SearchRange {
   double low, high;  ///< ends of the interval [unit of the parameter]
 };
 /// Returns the search range of a parameter with the value `value` in its model. A value outside the usual
-/// range extends the range beyond itself by the range's width. The extension does not cross zero unless the
-/// usual range does.
+/// range extends the range beyond itself by the range's width. The extension crosses zero only if the usual
+/// range does.
 SearchRange search_range(const Parameter& record, double value);
 
 }  // namespace swingbank::sim::plant

@@ -194,7 +194,7 @@ class BatchKernel {
   std::vector<Weighed> weighed_;
   bool weighs_ = false;                ///< true if a coefficient of weighed_ exceeds 1 in any lane
   std::vector<int> moving_;            ///< states that are not constant in some lane
-  std::vector<int> wanted_, sampled_;  ///< states that the outputs need; those of them that move
+  std::vector<int> wanted_, sampled_;  ///< states that the outputs need; those that are not constant
   std::vector<char> needed_;           ///< per state: 1 if the outputs need it
   std::vector<std::pair<std::size_t, std::size_t>>
       broadcast_;  ///< coefficients that the outputs need: first index, number
@@ -209,7 +209,7 @@ class BatchKernel {
   std::vector<T> ir_, ii_;       ///< scratch, if shares_
   Signals<T> signals_;           ///< scratch shared by all plants, because a new object would zero 25 packs
   std::vector<T> algebra_;       ///< scratch of newton_step
-  std::vector<T> steady_;        ///< currents of the linear sources at the nonlinear ones
+  std::vector<T> steady_;        ///< currents that the linear sources cause at the nonlinear sources
   T time_{}, start_{};           ///< time of the evaluation, start of the step [s]
   std::vector<T> y_, trial_;     ///< states
   std::vector<T> carry_, move_;  ///< if kCarries: rounding error of y_, increment of a step

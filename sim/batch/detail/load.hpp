@@ -154,8 +154,8 @@ void BatchKernel<T>::load_consumer(int lane, std::size_t load) {
              plants_.size() + load);
 }
 
-/// Selects the operating point of a lane's job. It is reused, because consecutive jobs mostly have the same
-/// operating point.
+/// Selects the operating point of a lane's job. An existing OperatingState is reused if possible, because
+/// consecutive jobs mostly have the same operating point.
 template <class T>
 void BatchKernel<T>::choose_state(int lane) {
   const auto& wanted = lanes_[static_cast<std::size_t>(lane)].job.grid;
@@ -194,7 +194,8 @@ void BatchKernel<T>::load(int lane) {
   run.clock.t = 0.0;
 }
 
-/// Finds the states that move in some lane. The others are constant in every step and are not integrated.
+/// Finds the states that move in some lane. All other states are constant in every step and are not
+/// integrated.
 template <class T>
 void BatchKernel<T>::find_moving() {
   const auto zero = [this](int coefficient) {

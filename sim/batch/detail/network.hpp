@@ -5,9 +5,9 @@
 
 namespace swingbank::sim::batch {
 
-/// Decides whether the lanes share the grid's own matrix, and sets it up. They do in grids of many sources,
-/// with two exceptions. With nonlinear sources Newton's method reads the lanes' matrices. A single lane has
-/// nothing to share.
+/// Decides whether the lanes share the grid's own matrix, and sets it up. The lanes share it in grids of many
+/// sources, with two exceptions. With nonlinear sources Newton's method reads the lanes' matrices. A single
+/// lane has nothing to share.
 template <class T>
 void BatchKernel<T>::share() {
   shares_ = kLanes > 1 && nonlinear_.empty() && n_ >= SharedNetwork<T>::kMany;

@@ -134,8 +134,8 @@ T BatchKernel<T>::angle_spread(const T* x) const {
   return maximum(high - low, T(0.0));
 }
 
-/// Returns the largest change of the angle between two rotors of the same island since the start [rad]. For a
-/// lane with several islands.
+/// Returns, for a lane with several islands, the largest change of the angle between two rotors of the same
+/// island since the start [rad].
 template <class T>
 double BatchKernel<T>::angle_spread_within_islands(int lane) const {
   const auto l = static_cast<std::size_t>(lane);

@@ -97,8 +97,8 @@ using OutputMatrix = Eigen::Matrix<double, kOutputs, kOutputs>;
 using StateMatrix = Eigen::Matrix<double, kMostFlowing, kMostFlowing>;
 using FromInputs = Eigen::Matrix<double, kMostFlowing, kInputs>;
 
-/// Linearised equations of a sample about the filter's state: y = C x + D n + v, x' = F x + G n. n is the
-/// noise of the played-in voltage, v that of the outputs.
+/// Linearised equations of a sample about the filter's state: y = C x + D n + v, x' = F x + G n. n: noise of
+/// the played-in voltage; v: noise of the outputs.
 struct Linear {
   StateMatrix F = StateMatrix::Zero();
   FromInputs G = FromInputs::Zero();

@@ -142,7 +142,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
     const auto on_circle = square > knee * knee;
     return select(on_circle, sqrt(select(on_circle, square, T(1.0))), (square + knee * knee) / (knee + knee));
   }
-  /// Computes the limits of both currents; that of the current with priority is Imax [pu].
+  /// Computes the limits of both currents; the limit of the current with priority is Imax [pu].
   template <class T>
   static void limits(const T* c, const T& p, const T& q, T& most_p, T& most_q) {
     const auto p_leads = c[Model::p_first] > T(0.5);

@@ -15,7 +15,7 @@ constexpr Parameter renamed(Parameter record, std::string_view name) {
   record.name = record.symbol = name;
   return record;
 }
-/// Returns the record with another default. `from`: source of the default; if omitted, that of the effect.
+/// Returns the record with another default. `from`: source of the default; if omitted, the effect's source.
 constexpr Parameter with(Parameter record, double standard, Source from = kAsEffect) {
   record.default_value = standard;
   record.default_from = from;

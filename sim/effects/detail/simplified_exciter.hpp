@@ -1,6 +1,6 @@
 #pragma once
 // Exciter of SEXS and SCRX: a lead-lag and one lag between fixed limits. A Model may append parameters and
-// coefficients; its second state is that of the lag.
+// coefficients; its second state is the lag's state.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"

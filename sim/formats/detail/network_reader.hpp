@@ -53,8 +53,8 @@ class NetworkReader {
 
   /// Returns the id of a switched shunt among the shunts of its bus: "SW", "SW2", "SW+".
   [[nodiscard]] std::string switched_id(int bus, const std::string& id) const;
-  /// Returns the index of the bus that a switched shunt regulates; its own bus if `number` is 0 or, with a
-  /// remark, if that bus is missing. `field`: "SWREG = ", for the remark.
+  /// Returns the index of the bus that a switched shunt regulates. It is the shunt's own bus if `number` is
+  /// 0, or if bus `number` is missing (with a remark). `field`: "SWREG = ", for the remark.
   int regulated_by(int bus, int number, const char* field, const psse::Fields& fields);
   /// Adds the steps of one block [pu each]. Reactors and capacitors accumulate separately.
   void add_steps(network::SwitchedShunt& shunt, int count, double each, const psse::Fields& fields);

@@ -162,7 +162,7 @@ void RawReader::header() {
     problems_.add("BASFRQ is missing", f.where(), "the swing equations need the system frequency",
                   "give it with --frequency-hz, 50 or 60 Hz");
   const double frequency = static_cast<double>(f.number(5, "BASFRQ", options_.frequency_hz.value_or(1.0)));
-  problems_.raise();  // the rest requires these values
+  problems_.raise();  // reading the sections requires these values
   if (version_ < 23 || version_ > 35)
     throw InputError({"version " + std::to_string(version_) + " of the .raw format", f.where(),
                       "versions 23 to 35 are read", "save the case as one of these versions"});

@@ -40,7 +40,7 @@ class Emitter {
  private:
   [[nodiscard]] bool loaded(int v) const { return known_[at(v)] >= 0 || graph_[v].act <= Act::signal; }
   [[nodiscard]] std::uint8_t place(int v) const { return static_cast<std::uint8_t>(register_[at(v)]); }
-  /// Emits the instruction of a vertex. The result gets its register before those of the operands are
+  /// Emits the instruction of a vertex. The result gets its register before the operands' registers are
   /// released, so that no instruction overwrites its own operands.
   void compute(int v) {
     const Vertex& vertex = graph_[v];

@@ -1,6 +1,6 @@
 #pragma once
 // Register program of a user-defined model's graph: one instruction list fills the coefficients once for each
-// simulation, the other evaluates the derivatives. No branch depends on a value of type T, and execution
+// simulation, a second list evaluates the derivatives. No branch depends on a value of type T, and execution
 // allocates no memory.
 #include <cstdint>
 #include <vector>
