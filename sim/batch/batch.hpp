@@ -37,7 +37,7 @@ struct Job {
   /// Parameter values of one block (an effect of a plant).
   struct BlockValues {
     int plant, block;            ///< index of the plant; number of the block (sim/plant/parameter_id.hpp)
-    std::vector<double> values;  ///< in record order
+    std::vector<double> values;  ///< in the order of the effect's parameters
     /// Compares all members.
     friend bool operator==(const BlockValues&, const BlockValues&) = default;
   };

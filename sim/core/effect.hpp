@@ -142,7 +142,7 @@ struct State {
   /// error.
   double weight = 1.0;
   /// Indices of the coefficients with the non-windup limits, -1: none. The integrator clamps the state at its
-  /// limits: at a limit, it sets a derivative that points outwards to zero.
+  /// limits: at a limit, it replaces a derivative that points outwards by zero.
   int low = -1, high = -1;  ///< coefficient indices of lower and upper limit
   /// Coefficients that multiply the derivative. While all named coefficients are zero, the state keeps its
   /// steady-state value, whatever the signals. A state without such coefficients is always integrated.

@@ -15,9 +15,9 @@ namespace swingbank::sim {
 struct MeasurementNoise {
   double level = 0;                                                ///< L; 0: no noise
   static constexpr double kOfSpeed = 0.05;                         ///< speed's level as a fraction of L
-  [[nodiscard]] double phasor() const { return level; }            ///< [pu, rad]
-  [[nodiscard]] double speed() const { return kOfSpeed * level; }  ///< [pu]
-  [[nodiscard]] double field(double value) const { return level * std::abs(value); }  ///< [pu]
+  [[nodiscard]] double phasor() const { return level; }            ///< of P, Q, V [pu] and theta [rad]
+  [[nodiscard]] double speed() const { return kOfSpeed * level; }  ///< of the speed [pu]
+  [[nodiscard]] double field(double value) const { return level * std::abs(value); }  ///< of Ifd or Efd [pu]
 };
 
 }  // namespace swingbank::sim

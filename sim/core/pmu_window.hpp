@@ -14,8 +14,8 @@ inline constexpr double kHalfOfP = 1.0;
 /// w(t) = 1 - |t| / half for |t| < half. t, half [s].
 inline double class_p(double t, double half) { return 1.0 - std::fabs(t) / half; }
 
-/// Reference filter of class M: reporting rate [1/s], cut-off frequency Ffr [Hz], order at 16 samples a
-/// cycle.
+/// Reference filter of class M: reporting rate [1/s], cut-off frequency Ffr [Hz], filter order at 16 samples
+/// per cycle.
 struct MClass {
   double reports, Ffr, order;  ///< reporting rate [1/s]; cut-off frequency [Hz]; order of the filter
   /// Returns half of the window's length [s]; `hz`: system frequency [Hz].

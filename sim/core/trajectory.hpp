@@ -38,7 +38,7 @@ struct CacheAligned {
 /// Samples at t = k/rate, k = 0..samples-1. At a switching time the sample is the value just before it,
 /// unless the integrator's options request the value after it.
 struct Trajectory {
-  double rate = 0.0;              ///< [1/s]
+  double rate = 0.0;              ///< samples per second [1/s]
   int samples = 0;                ///< number of samples of each row
   int stride = 0;                 ///< distance between rows of `values`, at least `samples`
   std::vector<int> plants;        ///< indices of the recorded plants in the grid

@@ -114,7 +114,7 @@ Field field(const VectorXd& beyond, const VectorXd& armature, const Axes& axes) 
     return f;
   };
   constexpr double kLowestKnee = -1.2,
-                   kHighestKnee = 1.0;  // A from S1.2 = S1.0 to S1.0 = 0
+                   kHighestKnee = 1.0;  // range of A: S1.2 = S1.0 to S1.0 = 0
   const auto found = minima([&](double A) { return at(A).left; }, kLowestKnee, kHighestKnee, kKnees);
   return at(found.front().at);
 }

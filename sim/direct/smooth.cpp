@@ -38,7 +38,7 @@ void smooth(Eigen::Ref<VectorXd> x, Index window) {
 }  // namespace
 
 Recording smoothed(Recording record) {
-  constexpr double kSmoothing = 0.2;  // [s]
+  constexpr double kSmoothing = 0.2;  // length of a parabola [s]
   const auto window = std::max<Index>(3, std::lround(kSmoothing / record.step));
   const double limit = leap_limit(record);
   const std::size_t steady = record.event > 0
@@ -52,7 +52,7 @@ Recording smoothed(Recording record) {
     if (x->empty()) continue;
     Eigen::Map<VectorXd> all(x->data(), static_cast<Index>(x->size()));
     const auto before = static_cast<Index>(edges[0]);
-    // The last sample may be at the event's time, with the value before or after the step.
+    // The last of the `before` samples may be at the event's time, with the value before or after the step.
     if (before > 1) all.head(before).setConstant(all.head(before - 1).mean());
     for (std::size_t k = 0; k + 1 < edges.size(); ++k)
       if (edges[k + 1] > edges[k])

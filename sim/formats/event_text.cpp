@@ -38,7 +38,8 @@ double event_time(const std::string& text, double t_end, const std::string& wher
   return t;
 }
 
-/// Returns the fields of `text`. Returns none, with a problem, unless their number is `least` to `most`.
+/// Returns the fields of `text`. If there are fewer than `least` or more than `most`, returns none and adds a
+/// problem.
 std::vector<std::string> fields(const std::string& text, std::size_t least, std::size_t most,
                                 const std::string& form, const std::string& where, Problems& problems) {
   auto part = fields(text);

@@ -1,6 +1,6 @@
 // Reader of the substations of versions 34 and 35: nodes and switches inside the buses. The other sections
 // describe the grid with closed switches merged, so a substation adds no equations if every bus is connected.
-// A bus that open switches split, or that a closed switch joins to another bus, is refused. Source: PSS/E
+// A bus is refused if open switches split it, or if a closed switch joins it to another bus. Source: PSS/E
 // data format manual, "Substation Data".
 #include <functional>
 

@@ -19,7 +19,7 @@ struct Field {
 };
 /// One record, or one line of a record. An empty unquoted field means the default.
 struct Record {
-  int line = 0;               ///< in the file, from 1
+  int line = 0;               ///< line in the file, from 1
   bool ended = false;         ///< true if it ends with '/'
   std::vector<Field> fields;  ///< fields in order
   std::string place = {};     ///< place in messages, if it is not a line of the file

@@ -199,8 +199,8 @@ void RawReader::three_windings(std::span<const Record> rows, const std::array<in
   }
 }
 
-/// Reads one correction table: points of T and factor, which is complex from version 34 on. A zero point or
-/// the end of the record ends the table; from version 34 on, it continues over lines until a zero point.
+/// Reads one correction table: points of T and factor. The factor is complex from version 34 on. A zero point
+/// or the end of the record ends the table; from version 34 on, it continues over lines until a zero point.
 void RawReader::correction_table(const Record& first) {
   const std::size_t width = version_ >= 34 ? 3 : 2;
   Fields head(first, file_, problems_);

@@ -19,7 +19,7 @@ void find_far(const Grid& grid, plant::Plant& plant, const std::string& where, P
 }  // namespace
 
 void attach(Grid& grid, const plant::Attachment& a, const std::string& where, Problems& problems) {
-  if (a.plant.empty() && !a.block.effect) return;  // the text was unreadable
+  if (a.plant.empty() && !a.block.effect) return;  // the text was invalid
   bool any = false;
   std::string names;
   for (plant::Plant& plant : grid.plants) {

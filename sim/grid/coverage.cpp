@@ -10,7 +10,7 @@
 namespace swingbank::sim::grid {
 namespace {
 
-/// Prefix of the names of missing models, and the reason.
+/// Beginning of the names of missing models, and why they are missing.
 struct Missing {
   std::string_view beginning, why;
 };

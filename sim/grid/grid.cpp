@@ -193,8 +193,8 @@ class GridMaker {
                                          " parameters: --map-model " + name + "=OTHER"));
     }
   }
-  /// Adds a model to the loads of a bus, an owner, a zone, an area or the grid that have the record's id; id
-  /// * selects all of them.
+  /// Adds a model to the loads of a bus, an owner, a zone, an area or the grid that have the record's id. The
+  /// id * selects all of them.
   void add_load(const Effect& effect, Reach reach, formats::DyrRecord record, const std::string& where,
                 Problems& problems) {
     constexpr std::array of = {"at bus", "of owner", "in zone", "in area", "anywhere"};
@@ -373,7 +373,7 @@ class GridMaker {
   [[nodiscard]] std::string bus_text(int bus) const { return grid_.network.bus_text(bus); }
   /// Adds a remark on buses where the solution differs from the file's voltages.
   void compare_with_file() {
-    constexpr double apart = 1e-3;  // [pu]
+    constexpr double apart = 1e-3;  // smallest reported difference [pu]
     std::vector<std::pair<double, std::size_t>> far;
     for (std::size_t i = 0; i < grid_.network.buses.size(); ++i) {
       const network::Bus& b = grid_.network.buses[i];

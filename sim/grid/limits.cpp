@@ -55,7 +55,7 @@ class Widener {
     double near = 0.0, far = kAllOpen;
     value(l) = l.given;
     if (is_feasible()) return;
-    constexpr double fine = 1e-9;  // [pu]
+    constexpr double fine = 1e-9;  // resolution of a widened limit [pu]
     while (far - near > fine) {
       const double middle = 0.5 * (near + far);
       value(l) = l.given + l.way * middle;

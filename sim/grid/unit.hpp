@@ -20,8 +20,8 @@ struct UnitChoice {
   std::string id = {};             ///< id of the unit; may be empty if the bus has one unit in service
   std::optional<double> frequency_hz = {};  ///< system frequency if the network's file has none [Hz]
   int raw_version = 0;                      ///< version of a .raw without REV; 0: not given
-  /// Models of the unit to drop or to read as others. A replacement with the same number of parameters keeps
-  /// the values; any other replacement has its own defaults.
+  /// Models of the unit to drop or to read as other models. A replacement with the same number of parameters
+  /// keeps the values; any other replacement has its own defaults.
   formats::DyrOptions models = {};
   std::optional<int> measured_at = {};  ///< measured bus beyond the unit's transformer
   /// Treatment of records that are too short (fill values) or too long (surplus values are dropped).

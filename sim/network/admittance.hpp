@@ -36,7 +36,7 @@ Eigen::SparseMatrix<Complex> dynamic_admittance(const Network& network, const Po
                                                 TiesIn ties = TiesIn::matrix);
 /// Returns the buses of islands that a trip has left without a generator, sorted. Their loads are shed.
 std::vector<int> dead_buses(const Network& network, const Topology& topology);
-/// Returns the buses at V = 0, by a bolted fault or because they are dead, sorted.
+/// Returns the buses at V = 0, sorted: buses with a bolted fault, and dead_buses().
 std::vector<int> grounded_buses(const Network& network, const Topology& topology);
 
 /// Kron reduction of `dynamic_admittance` to the `kept` buses: I = Y V. No current is injected at any other

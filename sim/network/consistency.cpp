@@ -164,8 +164,8 @@ struct FileBalance {
       others[i] = row[drawn.cols()] - drawn.row(i).sum();
     }
   }
-  /// Returns the imbalance [pu] at the buses of duplicate k, with and without it. `kept`: 1 for each kept
-  /// duplicate.
+  /// Returns the imbalance [pu] at the buses of duplicate k, with and without the duplicate. `kept`: 1 for
+  /// each kept duplicate.
   [[nodiscard]] std::pair<double, double> with_and_without(Eigen::Index k, Eigen::VectorXd kept) const {
     const auto size = [&](double of_it) {
       kept[k] = of_it;
@@ -204,7 +204,7 @@ std::string mva(const Network& n, double value) {
   return text;
 }
 
-/// Decides on generators at load buses by the file's voltages.
+/// Decides by the file's voltages which generators at load buses are in service.
 void settle_load_buses(Network& n, const std::function<std::string(std::size_t)>& where) {
   const auto at_load_bus = [&](const Generator& g) {
     return g.in_service && at(n, g.bus).type == BusType::load;

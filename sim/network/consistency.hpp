@@ -10,13 +10,13 @@
 namespace swingbank::sim::network {
 
 /// Takes the equipment of isolated buses (type 4) out of service: removes loads and shunts, marks branches
-/// and generators.
+/// and generators as out of service.
 void settle_isolated(Network& network);
 /// Isolates star points of three-winding transformers whose windings are all out of service. `stars`: bus
 /// indices.
 void isolate_idle_stars(Network& network, const std::set<int>& stars);
-/// Computes the voltages of star points from those at their windings, because files often contain only a
-/// default.
+/// Computes the voltages of star points from the voltages at their windings' buses, because files often
+/// contain only a default.
 void settle_stars(Network& network, const std::set<int>& stars);
 /// Equipment with an identity that the file has already used; it is kept under a new id.
 struct Duplicate {
@@ -26,9 +26,9 @@ struct Duplicate {
   std::string text{};      ///< description in remarks
 };
 struct Device;
-/// Keeps or removes each duplicate, and adds remarks. Without `by_voltages` all are kept. With it, a
-/// duplicate is removed if the file's voltages balance the powers at its buses better without it. Buses with
-/// devices are excluded from this balance.
+/// Keeps or removes each duplicate, and adds remarks. Without `by_voltages` all are kept. With `by_voltages`,
+/// a duplicate is removed if, without it, the file's voltages balance the powers at its buses better. Buses
+/// with devices are excluded from this balance.
 void settle_duplicates(Network& network, const std::vector<Duplicate>& duplicates, bool by_voltages,
                        const std::vector<Device>& devices);
 /// Resolves contradictions between generators in service, with a remark for each:
@@ -60,8 +60,8 @@ enum class DeviceReplacement {
 /// Replaces devices by loads, with a remark. Errors are added to `problems`.
 void replace_devices(Network& network, const std::vector<Device>& devices, DeviceReplacement how,
                      Problems& problems);
-/// Adds a problem for each item with a value that is not finite, as a quotient of extreme numbers may be.
-/// `file`: name in messages.
+/// Adds a problem for each item with a value that is not finite, which a quotient of extreme numbers can
+/// produce. `file`: name in messages.
 void check_finite(const Network& network, const std::string& file, Problems& problems);
 
 }  // namespace swingbank::sim::network

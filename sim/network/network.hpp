@@ -17,7 +17,7 @@ struct Bus {
   std::string name;                   ///< name in the file
   double kv;                          ///< nominal voltage [kV]
   BusType type;                       ///< type in the power flow
-  double vm, va;                      ///< voltage in the file, start of the power flow [pu, rad]
+  double vm, va;                      ///< voltage in the file, start value of the power flow [pu, rad]
   int area = 1, zone = 1, owner = 1;  ///< numbers in the file
   /// Bus numbers of the three-winding transformer with this star point; zeros: a bus of the file.
   std::array<int, 3> star_of{};
@@ -60,7 +60,7 @@ struct Branch {
   int from, to;                      ///< bus indices
   std::string circuit;               ///< circuit id in the file
   double r, x, b;                    ///< series impedance, total charging [pu]
-  double tap = 1.0, shift = 0.0;     ///< [-, rad]
+  double tap = 1.0, shift = 0.0;     ///< ratio [-], phase shift [rad]
   Complex shunt_from{}, shunt_to{};  ///< line shunts, magnetising admittance [pu]
   bool in_service = true;            ///< status in the file
   bool transformer = false;          ///< listed as a transformer; the equations are the same
@@ -71,7 +71,7 @@ struct Generator {
   std::string id;                        ///< id in the file
   double p, q;                           ///< dispatch [pu on base_mva]
   double vset;                           ///< voltage set-point, of bus `regulated` if given [pu]
-  double mva;                            ///< machine base
+  double mva;                            ///< machine base [MVA]
   double zr, zx;                         ///< ZSORCE [pu on mva]
   bool in_service = true;                ///< status in the file
   double q_min = -99.99, q_max = 99.99;  ///< reactive limits [pu on base_mva]

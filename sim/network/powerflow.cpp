@@ -118,7 +118,7 @@ class Newton {
     }
     return false;
   }
-  static constexpr double kAnyStep = 1e9;  ///< [rad, pu]
+  static constexpr double kAnyStep = 1e9;  ///< no limit of the step [rad, pu]
   /// Sets start voltages: the file's, or flat (1 pu, with the angles of the phase shifts).
   void start(bool flat) {
     std::ranges::fill(tie_current_, Complex{});
@@ -148,7 +148,7 @@ class Newton {
   /// Whether a voltage is far below nominal. Such a solution is not an operating point: without load, for
   /// example, V = 0 satisfies the equations of a bus.
   [[nodiscard]] bool collapsed() const {
-    constexpr double least = 0.2;  // [pu]
+    constexpr double least = 0.2;  // smallest voltage of an operating point [pu]
     for (Eigen::Index i = 0; i < v_.size(); ++i)
       if (role(static_cast<int>(i)).kind != Role::out && std::abs(v_[i]) < least) return true;
     return false;
@@ -326,9 +326,9 @@ class Newton {
   const Network& n_;
   const Demand& in_;
   const Roles* roles_ = nullptr;
-  Eigen::SparseMatrix<Complex> y_;  ///< without ties
+  Eigen::SparseMatrix<Complex> y_;  ///< bus admittance matrix without ties
   std::vector<Tie> ties_;
-  std::vector<Complex> tie_current_;        ///< into bus `to` [pu]
+  std::vector<Complex> tie_current_;        ///< currents of ties into bus `to` [pu]
   std::vector<int> angle_, magnitude_;      ///< position of each bus's unknowns, or -1
   std::vector<std::vector<Row>> reactive_;  ///< per bus
   int bus_unknowns_ = 0, unknowns_ = 0;
@@ -347,7 +347,7 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
   if (newton.iterate(options.tolerance, options.limit, iterations)) return;
   newton.start(true);  // in case the file's voltages are a poor start
   if (newton.iterate(options.tolerance, options.limit, iterations)) return;
-  constexpr double short_step = 0.1;  // [rad, pu]
+  constexpr double short_step = 0.1;  // longest step [rad, pu]
   constexpr int more = 5;             // factor of the iteration limit
   for (const bool flat : {false, true}) {
     newton.start(flat);
@@ -385,7 +385,7 @@ void share_freely(const Network& n, const std::vector<std::size_t>& units, doubl
   }
 }
 
-/// As share_freely(), but within each generator's reactive limits if the bus is within them.
+/// As share_freely(), but within each generator's reactive limits if the limits of all permit it.
 void share_out(const Network& n, int bus, Complex power, const PowerFlowOptions& options,
                std::vector<Complex>& generation) {
   std::vector<std::size_t> units;

@@ -8,12 +8,14 @@
 
 namespace swingbank::sim::network {
 
-/// Least impedance |R + jX| of a branch [pu on base_mva]. The voltage drop of a branch at or below it (1e-5
-/// pu at 10 pu current) is below the resolution of files and records. Such a branch gets j kLeastImpedance.
+/// Least impedance |R + jX| of a branch [pu on base_mva]. The voltage drop of a branch with at most this
+/// impedance (1e-5 pu at 10 pu current) is below the resolution of files and records. Such a branch gets the
+/// impedance j kLeastImpedance.
 constexpr double kLeastImpedance = 1e-6;
 /// Largest impedance of a tie [pu on base_mva]; compare PSS/E's THRSHZ. A tie's current is computed from its
-/// voltage difference or is an unknown of its own. If its admittance were added to those of the bus's other
-/// branches, their digits would be lost. The resulting voltages would be wrong by 1e-16 / |R + jX| pu.
+/// voltage difference or is an unknown of its own. If the tie's admittance were added to the admittances of
+/// the bus's other branches, the digits of the latter would be lost. The resulting voltages would be wrong by
+/// 1e-16 / |R + jX| pu.
 constexpr double kTieImpedance = 1e-4;
 
 /// Replaces an impedance up to kLeastImpedance by j kLeastImpedance, with a remark. `place`: the branch's

@@ -12,7 +12,7 @@ namespace {
 /// point, a constant-impedance load has E = 0. A load with nearly zero current, such as a compensator in the
 /// middle of its range, gets 1e3 pu.
 Complex source_impedance(Complex voltage, Complex current) {
-  constexpr double largest = 1e3;  // [pu]
+  constexpr double largest = 1e3;  // largest source impedance [pu]
   return std::abs(current) * largest > std::abs(voltage) ? -voltage / current : Complex(0.0, largest);
 }
 

@@ -20,7 +20,8 @@ struct TerminalRecord {
 
 /// Returns the phasors of a terminal; current is conj((P + jQ) / V). If record.df is empty, the frequency is
 /// the derivative of theta (central difference). `rate` [1/s]; `frequency`: system frequency [Hz]. Throws
-/// InputError where V = 0, because P and Q do not determine the current there; `where` names the record.
+/// InputError if V = 0 at a sample, because P and Q then do not determine the current; `where` names the
+/// record.
 Phasors phasors_of(const TerminalRecord& record, double rate, double frequency, const std::string& where);
 /// Inverse of phasors_of(). theta is unwrapped, and its first value is within pi of `first_theta` [rad].
 TerminalRecord terminal_of(const Phasors& phasors, double first_theta);

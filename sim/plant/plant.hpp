@@ -20,8 +20,8 @@ struct FarPlace {
   int branch = -1;      ///< index of the measured branch; -1: the plant's own power and current
   bool at_from = true;  ///< true: measured at the `from` side of this branch
 };
-/// Two-port between the plant's grid side and the point where its control measures. Voltage and current there
-/// are a V + b I and c V + d I [pu on the machine's base].
+/// Two-port between the plant's grid side and the point where its control measures. Voltage and current at
+/// that point are a V + b I and c V + d I [pu on the machine's base].
 struct TwoPort {
   Complex a = 1.0, b = 0.0, c = 0.0, d = 1.0;  ///< chain parameters [pu]
 };
@@ -29,7 +29,7 @@ struct TwoPort {
 struct Plant {
   std::string name;                 ///< "30" or "30/2": bus number, and id where a bus has several machines
   int bus = -1;                     ///< index into Network::buses
-  double mva = 100.0;               ///< machine base
+  double mva = 100.0;               ///< machine base [MVA]
   Complex generation;               ///< P + jQ at the operating point [pu on the network's base]
   Block machine;                    ///< synchronous machine or converter
   Block transformer;                ///< none: effect == nullptr; the bus is then the machine's terminal
@@ -37,7 +37,7 @@ struct Plant {
   std::vector<Block> measurements;  ///< instruments between grid and record
   int generator = -1;               ///< index into Network::generators
   FarPlace far_place;               ///< remote measuring point of its plant control
-  std::optional<TwoPort> beyond;    ///< network up to the measuring point; none: it is the grid side
+  std::optional<TwoPort> beyond;    ///< network up to the measuring point; none: measured at the grid side
   /// The remote measurement at the operating point [pu; power and current on `mva`]. Empty if the control
   /// measures at the plant.
   std::optional<Far<double>> far;
@@ -48,7 +48,7 @@ struct Consumer {
   int bus = -1;         ///< index into Network::buses
   int load = -1;        ///< index into Network::loads
   int regulated = -1;   ///< index of the bus whose voltage it regulates; -1: its own bus, or none
-  double mva = 100.0;   ///< base of its parameters
+  double mva = 100.0;   ///< base of its parameters [MVA]
   Complex consumption;  ///< P + jQ at the operating point [pu on the network's base]
   Block block;          ///< effect and parameters of the load
 };

@@ -88,7 +88,7 @@ class Recorder {
   }
 
  private:
-  /// Returns the angle plus the multiple of 2 pi that is closest to the last one.
+  /// Returns the angle, shifted by the multiple of 2 pi that brings it closest to the last angle.
   static double nearest(double angle, double last) {
     return angle + constants::turn * std::nearbyint((last - angle) / constants::turn);
   }
@@ -191,7 +191,7 @@ void operating_values(const grid::Grid& grid, const ReferencePlants& plants, dou
 /// voltages jump to another solution. Returns true, with the new time in t and the values after the jump in
 /// y; false if there is no jump.
 bool cross_voltage_step(const ReferenceSystem& system, double& t, double* y, const double* yp) {
-  constexpr double kOtherVoltage = 1e-3;     // [pu]
+  constexpr double kOtherVoltage = 1e-3;     // smallest jump to another solution [pu]
   constexpr double kLongestCrossing = 1e-4;  // [s], the states advance by their derivatives meanwhile
   const auto is_converter = [](const ReferenceSystem::Unit& u) {
     return u.plant && u.plant->machine.effect->converter;

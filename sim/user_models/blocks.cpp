@@ -82,8 +82,8 @@ int Reader::limited(const std::string& name, int vertex) {
   return graph_.make(Act::clamp, vertex, value(low, -far), value(high, far));
 }
 
-/// Returns the output of a block. Resolves only inputs on which the output depends without a state, so that a
-/// loop through a lag or an integrator is allowed.
+/// Returns the output of a block. Resolves only inputs on which the output depends directly, not through a
+/// state, so that a loop through a lag or an integrator is allowed.
 int Reader::block_output(const std::string& name) {
   Block& block = blocks_.at(name);
   const std::string key = "blocks." + name + ".";

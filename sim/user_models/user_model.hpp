@@ -13,7 +13,7 @@ namespace swingbank::sim::user_models {
 
 /// Reads a user-defined model and adds it to a library. Reading the same text again returns the same effect.
 /// Throws InputError with every error of the file (file:line:column), or if another effect of the library has
-/// the name.
+/// the same name.
 const Effect& load_user_model(const std::filesystem::path& file, library::EffectLibrary& library);
 /// The same for a string; `name` replaces the file name in messages.
 const Effect& load_user_model(const std::string& text, const std::filesystem::path& name,

@@ -130,7 +130,7 @@ void BatchKernel<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
 /// difference quotient, whose error only slows the convergence.
 template <class T>
 void BatchKernel<T>::algebra_jacobian(const Constants& k, const T* x, T* a) {
-  constexpr double nudge = 1e-6;  // [pu]
+  constexpr double nudge = 1e-6;  // step of the difference quotient [pu]
   const std::size_t count = nonlinear_.size(), size = 2 * count;
   T* derivative = algebra_.data() + size;  // dE/dV, four values per source
   for (std::size_t j = 0; j < count; ++j) {

@@ -34,7 +34,7 @@ class BatchKernel {
  private:
   using Traits = LaneTraits<T>;
   using Real = typename Traits::Real;
-  /// Whether the states are added with compensated summation, as in single precision.
+  /// Whether increments are added to the states with compensated summation, as in single precision.
   static constexpr bool kCarries = std::is_same_v<Real, float>;
   /// Factor of dp54::kink in the error estimate. 0.03 would bound the error of a kink by the tolerance; this
   /// value bounds it by ten times the tolerance.
@@ -53,7 +53,7 @@ class BatchKernel {
   /// Detection of kinks in an exciter with a stabiliser. The stabiliser's output Vs has a kink where it
   /// reaches or leaves its limits. At a limit, successive stages have bitwise equal Vs.
   struct Watch {
-    int first, count;           ///< states of the exciter
+    int first, count;           ///< first state of the exciter, number of its states
     T start{}, last{};          ///< Vs at the start of the step and at the last stage
     T rested{}, rested_next{};  ///< 1 if the last stage left Vs unchanged; for the previous and this step
     T same{};                   ///< number of stages with Vs unchanged from the previous stage

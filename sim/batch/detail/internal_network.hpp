@@ -80,7 +80,7 @@ class InternalNetwork {
   std::vector<int> node_of_;    ///< per source: position in buses_
   std::vector<double> base_;    ///< per source: its base divided by the network's base
   std::vector<int> generator_;  ///< per source: index into Network::generators, -1 for a load
-  std::vector<FarRows> far_;    ///< per plant
+  std::vector<FarRows> far_;    ///< row indices per plant
   int far_count_ = 0;
   std::deque<Reduced> cache_;
 };

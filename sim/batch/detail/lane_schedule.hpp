@@ -10,7 +10,7 @@ namespace swingbank::sim::batch {
 
 /// Step size control of a lane: proportional-integral (Hairer & Wanner II, IV.2), order 5.
 struct LaneClock {
-  double t = 0.0;     ///< [s]
+  double t = 0.0;     ///< present time [s]
   double h = 0.0;     ///< step size requested by the controller [s]
   double next = 0.0;  ///< next time that a step must not cross: a switching time or the end [s]
   float last_error = 1.0F;

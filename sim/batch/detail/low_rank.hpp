@@ -26,7 +26,7 @@ std::optional<LowRank> difference(const InternalMatrix& matrix, const InternalMa
 
 struct ImpedanceChange {
   int source;
-  Complex dz;  ///< [pu on its own base]
+  Complex dz;  ///< change of the impedance [pu on the source's base]
 };
 /// A matrix with access by rows and columns, computed on demand.
 struct ByRowsAndColumns {

@@ -1,10 +1,10 @@
 #pragma once
-// Row products of I = (G + jB) E, for a matrix with a value per lane or for one that all lanes share.
+// Row products of I = (G + jB) E, for a separate matrix per lane or for a matrix that all lanes share.
 #include "sim/batch/detail/low_rank.hpp"
 
 namespace swingbank::sim::batch {
 
-/// Computes one row of I for a matrix with a value per lane.
+/// Computes one row of I for a separate matrix per lane.
 template <class T>
 inline void row_times(const T* g, const T* b, const T* er, const T* ei, int columns, T& ir, T& ii) {
   T gr = g[0] * er[0], gi = g[0] * ei[0], bi = b[0] * ei[0], br = b[0] * er[0];
@@ -25,7 +25,7 @@ class SharedRows {
 #ifdef __AVX512F__
   static constexpr std::size_t kTogether = 4;
 #else
-  static constexpr std::size_t kTogether = 2;  ///< four sums per row, in sixteen registers
+  static constexpr std::size_t kTogether = 2;  ///< rows per product: four sums per row, in sixteen registers
 #endif
   /// Returns the size of ir and ii that `times` requires for a number of rows.
   static std::size_t padded(std::size_t rows) { return (rows + kTogether - 1) / kTogether * kTogether; }

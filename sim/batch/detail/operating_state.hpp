@@ -22,7 +22,7 @@ struct OperatingState {
   std::shared_ptr<const grid::Grid> kept;
   const grid::Grid& grid;
   InternalNetwork network;
-  std::vector<plant::Operating> plants, loads;  ///< with the grid's own parameters
+  std::vector<plant::Operating> plants, loads;  ///< initial states with the grid's own parameters
 };
 
 }  // namespace swingbank::sim::batch

@@ -1,7 +1,7 @@
 #pragma once
 // Network solution for grids of many sources, I = (M + sum_k u_k w_k^T) E, with one matrix for all lanes. M
 // is the grid's own matrix, stored densely or as sparse factors of the whole network. A few outer products
-// per lane represent its switching and its machine parameters. A matrix per lane would not fit into the
+// per lane represent that lane's switching and machine parameters. A matrix per lane would not fit into the
 // caches. The products of other lanes add zero to a lane, so its result is bitwise independent of them.
 #include <algorithm>
 #include <array>

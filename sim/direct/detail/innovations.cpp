@@ -314,8 +314,8 @@ template <class T>
 void innovations(const Effect& machine, const NoisyRecord& r, const std::vector<Gain>& gains,
                  const std::vector<T>& p, const std::array<T, kSteady>& steady, T* out) {
   Played<T> m(machine, r.conventions, p, steady);
-  // The noise of a mean before the event is that of one sample divided by the square root of the number of
-  // samples.
+  // The noise of a mean before the event equals the noise of one sample, divided by the square root of the
+  // number of samples.
   const double mean = std::sqrt(r.before) / r.noise.phasor();
   *out++ = T(mean) * (T(r.P0) - steady[kP0]);
   *out++ = T(mean) * (T(r.Q0) - steady[kQ0]);

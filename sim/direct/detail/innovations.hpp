@@ -18,7 +18,7 @@ enum Steady { kP0, kQ0, kV0, kTheta0, kSteady };
 /// Filter gain of one sample.
 struct Gain {
   using State = Eigen::Matrix<double, kMostFlowing, 1>;
-  Eigen::Matrix<double, kMostFlowing, kOutputs> onto_states;  ///< onto the states at the next sample
+  Eigen::Matrix<double, kMostFlowing, kOutputs> onto_states;  ///< gain onto the next sample's states
   Eigen::Matrix<double, kOutputs, kOutputs> whitening;        ///< inverse Cholesky factor of cov(innovation)
 };
 /// Result of the filter for given parameters and operating point.

@@ -13,8 +13,8 @@ struct Turning {
   Eigen::VectorXcd flux, current;
   Eigen::VectorXd V, speed, P, Ifd;  ///< time series over the segment; P is the air-gap power [pu]
   Eigen::VectorXd relative;          ///< rotor angle relative to the terminal, minus the initial value [rad]
-  std::complex<double> flux0, current0;  ///< at the record's first sample, in the terminal's frame
-  double Ifd0 = 0, P0 = 0;               ///< at the record's first sample [pu]
+  std::complex<double> flux0, current0;  ///< values at the record's first sample, in the terminal's frame
+  double Ifd0 = 0, P0 = 0;               ///< values at the record's first sample [pu]
   double field_before = 0;               ///< integral of Ifd0 - Ifd up to the segment's start [pu s]
   double step = 0;
 };

@@ -25,7 +25,7 @@ struct Column {
   Use use = Use::value;
   int dyr = -1;                ///< column of the .dyr, from 0
   double off = 0;              ///< value written to a .dyd; with Use::off the only accepted value
-  std::string_view idle = {};  ///< with Use::off: any value is accepted if this column is 0
+  std::string_view idle = {};  ///< with Use::off: any value is accepted if the column named here is 0
 };
 
 /// A .dyd model and its counterpart in a .dyr.

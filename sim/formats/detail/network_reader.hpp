@@ -32,7 +32,7 @@ class NetworkReader {
   int find_bus(int number, const psse::Fields& fields) {
     return identities_.bus_index(index_, number, section_, fields);
   }
-  /// Checks a status; `name`: its field in messages. Returns true if it is in service.
+  /// Checks a status; `name`: its field in messages. Returns true if the equipment is in service.
   bool status(int value, const char* name, const psse::Fields& fields);
   [[nodiscard]] double pu(long double mw) const { return static_cast<double>(mw / base_); }
   [[nodiscard]] network::Bus& at(int bus) { return network_.buses[static_cast<std::size_t>(bus)]; }
@@ -45,7 +45,7 @@ class NetworkReader {
   void raise_impedance(network::Branch& b, const psse::Fields& fields);
   /// Returns a transformer of impedance z [pu on the system base].
   static network::Branch transformer_of(int from, int to, std::string circuit, bool in_service, Impedance z);
-  /// Returns the impedances of the three windings from those between windings 1-2, 2-3 and 3-1.
+  /// Returns the impedances of the three windings from the impedances between windings 1-2, 2-3 and 3-1.
   static std::array<Impedance, 3> star_equivalent(Impedance z12, Impedance z23, Impedance z31);
   /// Adds the star point of a three-winding transformer and returns its index.
   int add_star_point(const std::array<int, 3>& ends, const std::string& circuit, bool in_service, double vm,
@@ -72,8 +72,8 @@ class NetworkReader {
 
   /// Takes isolated equipment out of service and checks that all values are finite.
   void check_network();
-  /// Completes a network without problems: star points, duplicates, devices, generators, islands. `place`:
-  /// place of generator i in the file.
+  /// Completes a network that was read without problems: star points, duplicates, devices, generators,
+  /// islands. `place`: place of generator i in the file.
   void complete_network(const std::function<std::string(std::size_t)>& place);
   RawSurvey take_survey() {
     return {std::move(network_), std::move(generator_line_), std::move(branch_line_), problems_.list()};

@@ -12,7 +12,7 @@ struct Role {
   enum Kind {
     out,        ///< isolated
     slack,      ///< angle and magnitude are given
-    regulated,  ///< magnitude is given, regulated by its own generators
+    regulated,  ///< magnitude is given; the bus's own generators regulate it
     load,       ///< P and Q are given
     leads,      ///< Q is unknown; it sets the magnitude at another bus, `target`
     follows     ///< Q is that of bus `leader` times the ratio of their shares

@@ -20,9 +20,9 @@ class SegmentSolver {
   ~SegmentSolver();
   SegmentSolver(const SegmentSolver&) = delete;
   SegmentSolver& operator=(const SegmentSolver&) = delete;
-  /// Advances y and y' to time t [s]. Returns false if IDA fails; y and y' are then those at reached().
+  /// Advances y and y' to time t [s]. Returns false if IDA fails; y and y' are then the values at reached().
   bool advance(double t);
-  [[nodiscard]] double reached() const { return reached_; }  ///< [s]
+  [[nodiscard]] double reached() const { return reached_; }  ///< time reached [s]
   [[nodiscard]] long steps() const;
 
  private:

@@ -386,7 +386,7 @@ void ReferenceSystem::tie_current(const network::Tie& tie, const double* y, doub
 }
 
 std::vector<double> ReferenceSystem::error_weights() const {
-  constexpr double kStabiliser = 30.0, kExciter = 10.0, kMachine = 10.0;  // decision 05
+  constexpr double kStabiliser = 30.0, kExciter = 10.0, kMachine = 10.0;  // error weights, decision 05
   std::vector<double> weight(static_cast<std::size_t>(size()), 1.0);
   for (const Unit& unit : plants_.units()) {
     if (!unit.plant) continue;

@@ -64,7 +64,7 @@ enum class Act : std::uint8_t {
   sine,
   cosine,
   clamp,
-  limit,  ///< clamp of a state to its own limits; the steady-state solution ignores it
+  limit,  ///< clamp of a state to its own limits; ignored by the steady-state solution
   inverse,
   select_less,        ///< a < b ? c : d
   select_less_equal,  ///< a <= b ? c : d

@@ -10,7 +10,7 @@ namespace {
 struct Output {
   std::string_view name;
   Slot replaced,
-      added;  ///< slot if the user-defined model replaces or adds to the output; machine: not allowed
+      added;  ///< slots of a model that replaces the output or adds to it; machine: not allowed
 };
 constexpr std::array kUserModelOutputs = {
     Output{"Vc", Slot::compensator, Slot::compensator}, Output{"dVref", Slot::machine, Slot::setpoint},
