@@ -88,7 +88,7 @@ class Data {
       }
     return any;
   }
-  /// Replaces the data type of the configuration if the data have another one.
+  /// Replaces the data type stated in the configuration if the data have another type.
   void settle_kind() {
     const std::string_view head = dat_.substr(0, 200);
     const bool text = head.find_first_not_of("0123456789.,+-eE \t\r\n\x1a") == std::string_view::npos;
@@ -252,7 +252,7 @@ class Data {
   }
 
   /// Compares the stamps with the rate, which has priority (clause 8.3), and notes a difference above 1 %. A
-  /// ratio above 9 becomes a problem: one of them is then in another, unknown unit.
+  /// ratio above 9 becomes a problem: the stamps or the rate are then in an unknown unit.
   void compare_stamps() {
     if (stamps_.size() < 2) return;
     const double stamped = (stamps_.back() - stamps_.front()) * c_.stamp, rated = out_.t.back();

@@ -239,7 +239,8 @@ class MatReader {
     return name;
   }
 
-  /// Converts matrices to columns. A list with as many names as a matrix has columns, or rows, names them.
+  /// Converts matrices to columns. If a list has as many names as a matrix has columns (or rows), these get
+  /// the names of the list.
   void name_tables() {
     for (const Table& table : tables_) {
       const Words* names = nullptr;

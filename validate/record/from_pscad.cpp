@@ -231,14 +231,14 @@ std::vector<Heading> headings_of(const std::vector<PscadChannel>& channels) {
   for (const PscadChannel& c : channels) {
     const std::string name = seen[c.name] > 1 && !c.group.empty() ? c.group + "." + c.name : c.name;
     auto meaning = column_meaning(name, c.unit);
-    // "V_dc" with a unit in the .inf is not V: only in text columns is the ending of a name a unit.
+    // "V_dc" with a unit in the .inf is not V: the ending of a name is a unit only in text columns.
     if (meaning && !meaning->unit && !c.unit.empty()) meaning.reset();
     headings.push_back({name, meaning, c.unit});
   }
   return headings;
 }
 
-/// Checks that all parts have the rows of the first one.
+/// Checks that all parts have the same times and the same number of rows as the first part.
 void check_rows(const std::vector<OutFile>& parts, Problems& problems) {
   for (std::size_t k = 1; k < parts.size(); ++k) {
     const OutFile &one = parts.front(), &other = parts[k];

@@ -5,15 +5,15 @@
 
 namespace swingbank::validate::record {
 
-/// Interpolation by a polynomial, fitted to the values on both sides of a gap with or without a step in the
-/// gap. Its degree has the least Akaike criterion (corrected for few values). Too low a degree misses the
-/// curvature of a swing; too high a degree follows noise.
+/// Interpolation by a polynomial fitted to the values on both sides of a gap, with or without a step in the
+/// gap. The polynomial's degree minimises the Akaike criterion (corrected for few values). Too low a degree
+/// misses the curvature of a swing; too high a degree follows noise.
 struct Across {
   std::vector<double> inside;  ///< values in the gap
   double step = 0;             ///< step in the gap; 0 if the criterion prefers a smooth polynomial
 };
-/// Interpolates at the abscissae `inside` from the values `value` at `at` on both sides. The abscissae range
-/// from about -1 to 1, with 0 in the middle of the gap. Requires at least kMinAcross values.
+/// Interpolates at the abscissae `inside` from the values `value` at the abscissae `at` on both sides. The
+/// abscissae range from about -1 to 1, with 0 in the middle of the gap. Requires at least kMinAcross values.
 Across across(const std::vector<double>& at, const std::vector<double>& value,
               const std::vector<double>& inside);
 constexpr std::size_t kMinAcross = 6;

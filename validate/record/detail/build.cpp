@@ -123,7 +123,7 @@ void cut_rows(RawRecord& raw, const ReadOptions& options, SampleFaults& faults) 
   }
 }
 
-/// Returns whether a frame without this quantity is lost, because the quantity is an input of the playback.
+/// Returns whether a frame without this quantity counts as lost, as it does for each input of the playback.
 /// For a component, and for one of several joined files, every column is required.
 bool is_required(const RawRecord& raw, const ReadOptions& options, Quantity q) {
   if (options.part || options.component != Component::plant) return true;

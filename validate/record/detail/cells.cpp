@@ -15,7 +15,8 @@ namespace {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Returns the digits without the thousands separator `mark`; none if it does not separate groups of three.
+/// Returns the digits without the thousands separator `mark`; no value if `mark` does not separate groups of
+/// three digits.
 std::optional<std::string> ungrouped(std::string_view digits, std::string_view mark) {
   std::string all;
   std::size_t group = 0, groups = 0;
@@ -74,7 +75,8 @@ std::string plain(std::string_view cell, char separator, Number& n) {
   return sign + std::string(cell);
 }
 
-/// Returns whether blanks separate the values: three of the first 50 lines are numbers separated by blanks.
+/// Returns whether blanks separate the values: at least three of the first 50 lines contain only numbers
+/// separated by blanks.
 bool by_blanks(std::string_view text) {
   int found = 0;
   for (int n = 0; n < 50 && !text.empty(); ++n) {

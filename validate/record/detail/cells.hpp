@@ -38,9 +38,9 @@ struct TableTop {
   char separator = ',';
   int line = 0;
 };
-/// Finds the heading: the one of the first 60 lines that names the most quantities, at least two, with any
-/// separator. Earlier lines may have another format. If there is no heading, returns the first line with
-/// several cells.
+/// Finds the heading among the first 60 lines: the line that names the most quantities (at least two),
+/// whatever its separator. Earlier lines may have another format. If there is no heading, returns the first
+/// line with several cells.
 TableTop find_top(std::string_view text, const ColumnMap& columns);
 
 }  // namespace swingbank::validate::record

@@ -114,8 +114,8 @@ std::optional<Terminals> two_devices(const std::vector<Heading>& headings, const
   return both;
 }
 
-/// Returns the terminal to read: the requested one, that of columns without a terminal, the only complete
-/// one, or two that complete each other.
+/// Returns the terminal to read: the requested one, an empty name if the columns without a terminal are
+/// complete, the only complete terminal, or two that complete each other.
 Terminals choose_terminals(const std::vector<Heading>& headings, const ReadOptions& options,
                            const std::string& where, Record& about, Problems& problems) {
   const std::string& asked = options.terminal;
@@ -220,7 +220,7 @@ Named without_unit(Named named) {
           named.negated};
 }
 
-/// Sets the meaning of the columns named by the user, and clears it in others of the same quantity.
+/// Sets the meaning of the columns named by the user, and clears it in other columns of the same quantity.
 class Mapper {
  public:
   Mapper(std::vector<Heading>& headings, const ReadOptions& options, const std::string& where, Record& about,
@@ -288,7 +288,8 @@ class Mapper {
   Problems& problems_;
 };
 
-/// Returns whether no column of the quantity belongs more closely to the terminal: "32/1" rather than "32".
+/// Returns whether the column is the one of its quantity that belongs most closely to the terminal: a column
+/// of "32/1" is preferred to one of "32".
 bool is_nearest(const std::vector<Heading>& headings, const Heading& one, const Terminals& terminals) {
   const ColumnMeaning& m = *one.meaning;
   return std::ranges::none_of(headings, [&](const Heading& h) {

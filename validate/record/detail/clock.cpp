@@ -83,7 +83,7 @@ void settle_clock(RawRecord& raw) {
 
 bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const ReadOptions& options,
                  const std::string& file, Problems& problems) {
-  constexpr double kSlowest = 0.55, kSlowestGovernor = 5.5;  // [s]; accepts 2 samples/s, and 1 in 5 s
+  constexpr double kSlowest = 0.55, kSlowestGovernor = 5.5;  // [s]: 2 samples/s, or 1 in 5 s for governors
   constexpr double kShortestHere = 0.5;                      // [s], length of a record
   const auto plausible = [](double step) { return step > 1e-4 && step < 0.2; };
   const double step = usual_step(t);

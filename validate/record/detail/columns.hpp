@@ -17,8 +17,8 @@ struct ColumnMeaning {
   bool deviation = false;    ///< values are deviations from nominal (speed), not 1 at nominal (omega)
   std::string terminal;      ///< prefix of the name: "G2" of "G2.V_pu"
   bool negated = false;      ///< the file's sign is opposite
-  /// A unit is given but does not belong to the quantity. A missing unit of the time is inferred from the
-  /// values, an unknown one is not.
+  /// Whether the given unit does not belong to the quantity. A missing time unit is inferred from the values,
+  /// but an unknown time unit is not.
   bool unknown_unit = false;
   std::optional<Phase> phase = {};  ///< phase of a three-phase quantity; none: positive sequence
 };
@@ -30,8 +30,8 @@ std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::strin
 /// Returns the quantity denoted by a user's word ("V", "omega"), without unit.
 std::optional<ColumnMeaning> quantity_of(std::string_view word);
 
-/// Returns a unit of the quantity: `unit` if it is one, else the one at the end of the heading ("BUS1_kV",
-/// "GSU_T1.MW", "Pgen [MW]").
+/// Returns a unit of the quantity: `unit` if that is such a unit, otherwise the unit at the end of the
+/// heading ("BUS1_kV", "GSU_T1.MW", "Pgen [MW]").
 std::optional<Unit> unit_in(Quantity quantity, std::string_view heading, std::string_view unit);
 
 /// Returns the meaning of a PSS/E channel as exported by dyntools: "VOLT 32 [NORTH 20.0]" belongs to terminal

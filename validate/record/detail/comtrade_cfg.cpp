@@ -114,7 +114,8 @@ class Config {
   void channel() {
     const Fields f = next();
     if (ended_) return;
-    const bool old = c_.about.revision == 1991 && f.size() < kFields;  // no ratio and side of the transformer
+    const bool old =
+        c_.about.revision == 1991 && f.size() < kFields;  // no transformer ratio and side (P or S)
     if (f.size() < (old ? kFieldsOf1991 : kFields)) {
       fault(fmt::format("analogue channel with {} fields", f.size()),
             fmt::format("expected {} fields", old ? kFieldsOf1991 : kFields),

@@ -31,7 +31,7 @@ std::vector<RawColumn*> phasors_of(RawRecord& raw) {
 
 /// Returns whether V and the power at row `after` equal those at row `before`, within 0.02 pu and 5 % of the
 /// power. The tolerance is larger if V or the power moved before the gap: 1.5 times their movement over as
-/// many rows.
+/// many rows as the gap has.
 bool goes_on(const RawRecord& raw, std::size_t before, std::size_t after) {
   constexpr double kVoltageGoesOn = 0.02, kPowerGoesOn = 0.05;
   const auto moved = [&](const RawColumn& c) {

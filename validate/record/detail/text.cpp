@@ -85,7 +85,8 @@ std::uint32_t from_1251(unsigned char c) {
 }
 std::uint32_t from_1252(unsigned char c) { return c >= 0x80 && c < 0xA0 ? k1252[c - 0x80U] : c; }
 
-/// Returns whether bytes from 0xC0 on are mostly adjacent. They are in Cyrillic, but not in western text.
+/// Returns whether bytes from 0xC0 on are mostly adjacent. Such bytes are adjacent in Cyrillic text, but not
+/// in western text.
 bool is_cyrillic(std::string_view s) {
   std::size_t letters = 0, beside = 0;
   for (std::size_t k = 0; k < s.size(); ++k) {

@@ -20,7 +20,7 @@ std::vector<double> steps_of(const std::vector<double>& t) {
   return steps;
 }
 
-/// Maximum length of a record including missing samples: more than an hour at 480 samples/s. A longer one
+/// Maximum length of a record including missing samples: more than an hour at 480 samples/s. A longer record
 /// contains an invalid time.
 constexpr std::size_t kMostSamples = 2'000'000;
 
@@ -66,7 +66,7 @@ bool snap(std::vector<double>& t, double resolution, Record& about) {
 }
 
 /// Corrects at most three adjustments of a clock between continuous samples: set back by up to 1.5 s, or
-/// changed by half hours. Possible gaps and rows out of order are left unchanged.
+/// changed by a multiple of half an hour. Possible gaps and rows out of order are left unchanged.
 void unleap(std::vector<double>& t, const SampleFaults& faults, std::vector<std::string>& notes) {
   constexpr double kSeconds = 1.5, kHalfHour = 1800;
   const std::vector<double> steps = steps_of(t);
@@ -229,8 +229,8 @@ bool differ(const std::vector<double>& steps) {
 /// Rows that repeat the time of the row before: number, first one, longest run.
 struct RepeatedTimes {
   std::size_t rows = 0, first = 0, longest = 0;
-  /// Whether the steps between different times are equal. They are not in a simulation with variable steps,
-  /// which repeats a time at an event.
+  /// Whether the steps between different times are equal. The steps differ in a simulation with variable
+  /// steps, which repeats a time at an event.
   bool even = true;
 };
 RepeatedTimes repeated_times(const std::vector<double>& t) {

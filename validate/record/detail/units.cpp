@@ -44,7 +44,8 @@ constexpr struct {
     {Unit::kiloampere, "ka kiloamp kiloamps kiloampere kiloamperes"},
     {Unit::ampere, "a amp amps ampere amperes"},
 };
-/// Ignored qualifiers after a unit, and those after a voltage that state line to line or line to neutral.
+/// Ignored qualifiers after a unit, then qualifiers after a voltage unit that state line to line or line to
+/// neutral.
 constexpr std::string_view kIdleBehindUnits =
     "pos positive seq sequence rms prim primary utc gmt local unix epoch since from after start trigger "
     "event 1970";
