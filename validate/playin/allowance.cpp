@@ -7,7 +7,7 @@
 namespace swingbank::validate::playin {
 
 std::vector<double> allowances(const LinearPlant& plant, std::span<const Output> compared, double interval) {
-  constexpr double kUnseen = 1e-6;  // a state with less effect may be behind a limit and act later: factor 1
+  constexpr double kUnseen = 1e-6;  // below this effect the factor is 1: a limit may delay the effect
   constexpr int kDoublings = 8;     // effects are evaluated up to 2^8 samples later
   const Eigen::Index n = plant.A.rows();
   std::vector<double> all(static_cast<std::size_t>(n), 1.0);

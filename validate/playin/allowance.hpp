@@ -13,7 +13,7 @@ namespace swingbank::validate::playin {
 /// [s].
 std::vector<double> allowances(const LinearPlant& plant, std::span<const Output> compared, double interval);
 
-/// Upper bound of the factor: the linearisation about the start does not describe a plant at a limit.
+/// Upper bound of the factor, because the linearisation about the start does not describe a plant at a limit.
 constexpr double kMostAllowance = 100;
 
 }  // namespace swingbank::validate::playin

@@ -6,7 +6,7 @@ namespace swingbank::validate::playin {
 
 /// Returns whether the block's equations are defined for its parameters.
 bool can_run(const sim::plant::Block& block);
-/// Returns the same for all blocks of a plant, instruments included.
+/// Returns whether this holds for all blocks of a plant, including its instruments.
 bool can_run(const sim::plant::Plant& plant);
 /// Returns whether the plant can run and its parameters are physically possible (Effect::unphysical).
 /// Violations that `given`, the submitted model with the same blocks, already contains are allowed, so that a

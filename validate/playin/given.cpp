@@ -57,7 +57,7 @@ Given::Given(const record::Record& played, const std::vector<Switching>& switchi
              const OperatingPoint& start)
     : before_(steady_values(start)) {
   auto plain = switchings;
-  for (Switching& s : plain) s.has_before = s.has_after = false;  // they are known for the voltage only
+  for (Switching& s : plain) s.has_before = s.has_after = false;  // known for the voltage only
   const std::vector<Source> all = sources(played, start);
   for (std::size_t i = 0; i < all.size(); i += 2) {
     const Source* second = i + 1 < all.size() ? &all[i + 1] : nullptr;

@@ -33,7 +33,7 @@ class Given {
   At before_;
 };
 
-/// Returns whether the record is of an exciter or a governor, which is connected to the recorded machine.
+/// Returns whether the record is of an exciter or a governor, which is simulated with the recorded machine.
 inline bool is_part(const record::Record& r) {
   return r.component == record::Component::exciter || r.component == record::Component::governor;
 }

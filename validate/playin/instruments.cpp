@@ -14,7 +14,8 @@ using Kind = SensitivityParameter::Kind;
 /// Oversampling of the response for instruments with memory. At the record's own rate, a step of the response
 /// would extend over a whole sample interval before it is filtered.
 constexpr int kFine = 8;
-/// Step of a parameter for central differences, as a fraction of its range. The result hardly depends on it.
+/// Step of a parameter for central differences, as a fraction of its range. The result hardly depends on this
+/// step.
 constexpr double kMove = 1e-5;
 
 /// Returns the lag of an angle that is integrated from the chain's frequency [s].
@@ -122,8 +123,9 @@ class Observed {
     Q = seen.Q;
     return r;
   }
-  /// Returns the sensitivity to a parameter of an instrument, after run(). If it does not change the gain for
-  /// constant phasors, the plant's run is unchanged, and only the instruments' outputs are recomputed.
+  /// Returns the sensitivity to a parameter of an instrument, after run(). If the parameter does not change
+  /// the gain for constant phasors, the plant's run is unchanged, and only the instruments' outputs are
+  /// recomputed.
   [[nodiscard]] Response::Sensitivity along(const SensitivityParameter& d) const {
     const auto& record = sim::plant::parameter_record(*run_.plant, d.parameter);
     const double move = kMove * (record.high - record.low);

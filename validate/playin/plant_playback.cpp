@@ -25,7 +25,7 @@ constexpr double kRoughFrom = 1e-5;     ///< tolerance from which the 3(2) pair 
 constexpr double kShortestStep = 1e-9;  ///< [s]
 constexpr double kCornerError = 1e-6;   ///< accepted error of a state in a step across a corner
 constexpr double kTimeError = 1e-8;     ///< accuracy of the time at which the equations are discontinuous [s]
-constexpr double kRateOver = 1e-6;      ///< interval for the rate of a guard at zero [s]
+constexpr double kRateOver = 1e-6;  ///< interval of the difference that gives a guard's rate at its zero [s]
 
 template <class T>
 class Solver {
@@ -53,7 +53,8 @@ class Solver {
     for (auto& values : back.value) values.reserve(r.t.size());
     for (auto& sensitivity : back.sensitivities)
       for (auto& values : sensitivity.value) values.reserve(r.t.size());
-    const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching belongs before it
+    const double slack =
+        1e-4 * r.step();  // as in VoltageCurve: a sample at a switching time is the value before it
     t_ = r.t.front();
     for (const double sample : r.t) {
       if (sample > run_.until) break;
@@ -339,7 +340,8 @@ class Solver {
     }
     return worst;
   }
-  /// The states as an array of doubles: value and sensitivities of each state, all with the same step sums.
+  /// The states as an array of doubles: value and sensitivities of each state, to which the same Runge-Kutta
+  /// sums apply.
   static constexpr std::size_t kNumbers = sizeof(T) / sizeof(double);
   static_assert(kNumbers * sizeof(double) == sizeof(T) && std::is_trivially_copyable_v<T>);
   static double* numbers(std::vector<T>& states) { return reinterpret_cast<double*>(states.data()); }

@@ -130,8 +130,8 @@ struct SeenAlong {
   Seen steady;             ///< at the operating point, in steady state
   std::vector<Seen> seen;  ///< along the run
 };
-/// Returns these inputs at every sample and integration step, on both sides of every switching time, and at
-/// `times` [s] (ascending). Throws as simulate_playback().
+/// Returns the inputs of the controls at every sample and integration step, on both sides of every switching
+/// time, and at `times` [s] (ascending). Throws as simulate_playback().
 SeenAlong seen_along(const PlaybackRun& run, std::span<const double> times = {});
 
 /// Linearised plant about a run's start: \f$x' = A x + B u\f$, \f$y = C x + D u\f$ with u = (relative change

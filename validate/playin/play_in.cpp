@@ -70,7 +70,7 @@ PolynomialFit polynomial_fit(const std::vector<double>& t, const std::vector<dou
 }
 /// If the pre-event angle is curved, sets the start to the trends of angle, V, P and Q at the first sample
 /// and returns true. The frequency of the grid then changes before the event, so a frame that rotates at
-/// constant speed would deviate at both ends.
+/// constant speed would deviate at both ends of the pre-event window.
 bool start_on_trajectory(const record::Record& record, OperatingPoint& point) {
   // [rad]; changes the power across a transient reactance of 0.3 pu by 0.33 % of the MVA
   constexpr double kLeastBend = 1e-3;

@@ -42,9 +42,9 @@ const std::vector<double>& output_of(const Playback& playback, Output output);
 void take_outputs(Response& response, Playback& back);
 
 /// Returns the plant's response to the curve, and to further inputs in a component's record. The plant starts
-/// in equilibrium at the pre-event mean. Without an exciter Efd is constant, and without a governor Tm. If
-/// the pre-event angle changes at a constant rate, the reference frame rotates at that rate. Throws
-/// InputError if the operating point has no steady state, or if the integration fails (with the time).
+/// in equilibrium at the pre-event mean. Efd is constant without an exciter, and Tm is constant without a
+/// governor. If the pre-event angle changes at a constant rate, the reference frame rotates at that rate.
+/// Throws InputError if the operating point has no steady state, or if the integration fails (with the time).
 Playback play_in(const sim::plant::PlantUnderTest& tested, const record::Record& record,
                  const VoltageCurve& curve, const PlayInOptions& options = {});
 

@@ -3,8 +3,8 @@
 
 namespace swingbank::validate::playin {
 
-/// Returns the value, at the fraction `share` of an interval of length h, of the cubic with these values and
-/// derivatives at the ends.
+/// Returns the cubic Hermite interpolant at the fraction `share` of an interval of length h, from the values
+/// and derivatives at its ends.
 inline double hermite(double share, double h, double from, double derivative_from, double to,
                       double derivative_to) {
   const double rest = 1 - share;

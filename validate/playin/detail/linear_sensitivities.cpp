@@ -21,19 +21,19 @@ using sim::P8, by_pack::Matrix, by_pack::kLanes;
 
 constexpr double kNodeMove = 1e-6;  ///< step of a finite difference, relative to 1 + |state|
 constexpr double kAtLimit = 1e-9;   ///< distance below which a state is at its limit, relative to 1 + |state|
-/// A step is halved if any entry of A, times the step, changes by more than this within the step. Such a
-/// change indicates that a limit of a signal begins or ceases to act.
+/// A step h is halved if h times any entry of A changes by more than this within the step. Such a change
+/// indicates that a limit of a signal begins or ceases to act.
 constexpr double kBend = 0.05;
 
 /// Linearised plant at a node: x' = A x + B, y = C x + D. A and C refer to states and inputs, B and D to
-/// sensitivity parameters. The last row of C and D belongs to the guard that passes zero.
+/// sensitivity parameters. The last row of C and D belongs to the guard function that passes zero.
 struct Linear {
   Linear(std::size_t n, std::size_t inputs, std::size_t m, std::size_t outputs)
       : A(n, inputs), B(n, m), C(outputs + 1, inputs), D(outputs + 1, m), limits(n, m), clamped(n, 0) {}
   Matrix A, B, C, D;
   Matrix limits;                  ///< sensitivities of the limits at which states are clamped
   std::vector<std::size_t> hats;  ///< packs of B and D with non-zero hat functions
-  std::vector<char> clamped;      ///< states clamped at a limit; their sensitivities are the limit's
+  std::vector<char> clamped;      ///< states clamped at a limit; their sensitivities equal the limit's
   bool any_clamped = false;
 };
 
@@ -120,19 +120,19 @@ class LinearSensitivities {
   /// Eight copies of the plant in a SIMD batch, each with another perturbation.
   struct Copies {
     PlaybackEquations<P8> equations;
-    bool by_state;     ///< whether states and inputs are perturbed; otherwise sensitivity parameters
+    bool by_state;     ///< true: states and inputs are perturbed; false: parameters are
     std::size_t pack;  ///< pack of columns that receives the sensitivities
   };
-  /// Derivatives, outputs and one guard in all lanes. Finite differences are taken between two such
-  /// evaluations, not from the stored trajectory, so that a perturbation without effect gives a sensitivity
-  /// of exactly zero.
+  /// Derivatives, outputs and one guard function in all SIMD lanes. Finite differences are taken between two
+  /// such evaluations, not from the stored trajectory, so that a perturbation without effect gives a
+  /// sensitivity of exactly zero.
   struct Evaluated {
     std::vector<P8> dx;
     std::array<P8, kOutputs> y;
     P8 guard;
   };
   static std::size_t copies_for(std::size_t columns) { return (columns + kLanes - 1) / kLanes; }
-  /// Returns the number of packs of parameters whose input has begun.
+  /// Returns the number of packs up to the last parameter whose input has begun.
   [[nodiscard]] std::size_t wide() const { return copies_for(active_); }
   static bool is_input(const SensitivityParameter& d) {
     return d.kind == Kind::torque || d.kind == Kind::field;
@@ -144,8 +144,8 @@ class LinearSensitivities {
     return d.kind == Kind::parameter || d.kind == Kind::P || d.kind == Kind::Q;
   }
 
-  /// Computes the sensitivities of the initial state, and prepares the perturbed copies: by states and
-  /// inputs, and by parameters that change the coefficients.
+  /// Computes the sensitivities of the initial state, and prepares the perturbed copies: some perturb states
+  /// and inputs, others parameters that change the coefficients.
   void start() {
     sim::plant::OperatingOf<P8> at;
     for (std::size_t first = 0; first < m_; first += kLanes) {
@@ -208,7 +208,7 @@ class LinearSensitivities {
       outward_[i] = (high ? 1.0 : -1.0) * scale;
     }
   }
-  /// Sets the states of a node; clamped states take the limit of each lane.
+  /// Sets the states of a node. In each SIMD lane, clamped states take the limit of that lane's copy.
   void place(const PlaybackEquations<P8>& equations, const double* x) {
     for (std::size_t i = 0; i < n_; ++i) x_[i] = P8(x[i]);
     if (!now_.any_clamped) return;
@@ -422,7 +422,7 @@ class LinearSensitivities {
   std::span<const SensitivityParameter> parameters_;
   const Trace& trace_;
   Response& response_;
-  const std::size_t n_, m_, inputs_;  ///< numbers of states; sensitivity parameters; states, torque and field
+  const std::size_t n_, m_, inputs_;  ///< numbers of states; of parameters; of states, torque and field
   std::size_t active_ = 0;            ///< 1 + largest index of a sensitivity parameter whose input has begun
   std::size_t begun_ = 0;             ///< number of entries of `begins_` that have begun
   std::vector<std::pair<double, std::size_t>>

@@ -36,7 +36,8 @@ class Matrix {
   std::vector<P8> all_;
 };
 
-/// Adds factors * from to `count` rows of one pack, from row `first` on. `inner`: number of rows of `from`.
+/// Adds the product `factors` * `from` to `count` rows of one pack, starting at row `first`. `inner`: number
+/// of rows of `from`.
 template <std::size_t count>
 void add_rows(const Matrix& factors, std::size_t first, std::size_t inner, const P8* from, P8* to) {
   P8 sum[count];
@@ -54,7 +55,7 @@ void add_rows(const Matrix& factors, std::size_t first, std::size_t inner, const
   for (std::size_t i = 0; i < count; ++i) to[first + i] = sum[i];
 }
 /// Computes to += factors * from for one pack of columns, from row i on.
-template <std::size_t count = sim::kRegisterBytes == 64 ? 8 : 4>  // their sums stay in registers
+template <std::size_t count = sim::kRegisterBytes == 64 ? 8 : 4>  // sums of these rows stay in registers
 void add_product(const Matrix& factors, std::size_t inner, const P8* from, P8* to, std::size_t i = 0) {
   for (; i + count <= factors.rows(); i += count) add_rows<count>(factors, i, inner, from, to);
   if constexpr (count > 1) add_product<count / 2>(factors, inner, from, to, i);

@@ -44,7 +44,7 @@ struct Seeds<sim::D8> {
   }
 };
 
-/// Side of a switching time.
+/// Conditions on one side of a switching time.
 struct Side {
   int segment = 0;             ///< of the voltage curve
   double last_moment = 1e300;  ///< largest time that effects receive [s]
@@ -83,7 +83,7 @@ class PlaybackEquations {
 
   Side side;
   std::vector<T> c, x0;                 ///< coefficients; initial states
-  T Efd, Tm;                            ///< constant values without exciter or governor
+  T Efd, Tm;                            ///< constant if there is no exciter or no governor
   T more_torque{0.0}, more_field{0.0};  ///< offsets of the inputs
   sim::Signals<T> signals;              ///< of the last evaluation
 

@@ -39,7 +39,8 @@ class PowerPlayback {
 
   PowerResponse run() {
     const record::Record& r = *run_.record;
-    const double slack = 1e-4 * r.step();  // as in VoltageCurve: a sample at a switching belongs before it
+    const double slack =
+        1e-4 * r.step();  // as in VoltageCurve: a sample at a switching time is the value before it
     t_ = r.t.front();
     for (const double sample : r.t) {
       while (next_ < times_.size() && sample > times_[next_].time + slack) {
@@ -57,7 +58,7 @@ class PowerPlayback {
  private:
   struct SwitchingTime {
     double time;
-    bool switches;  ///< whether it is a switching of the record; otherwise of an effect
+    bool switches;  ///< true: switching of the record; false: of an effect
   };
   void collect_switching_times() {
     for (const auto& s : run_.power->switchings()) times_.push_back({s.time, true});
@@ -78,7 +79,8 @@ class PowerPlayback {
     return std::conj((w + b) / e);
   }
   /// Solves V conj(I) = S at the grid side for a machine whose current is a nonlinear function of its
-  /// voltage. Newton's method with finite differences finds the terminal voltage, from the last solution.
+  /// voltage. Newton's method with finite differences finds the terminal voltage, starting from the last
+  /// solution.
   std::optional<Complex> by_newton(const double* x, Complex s, sim::Signals<double>& signals) {
     const auto grid_side = [&](Complex v) {
       signals.Vr = v.real();
@@ -223,7 +225,7 @@ VoltageCurve power_curve(const record::Record& record, std::vector<Switching> sw
     power.V.push_back(std::hypot(record.P[k], record.Q[k]));
     power.theta.push_back(std::atan2(record.Q[k], record.P[k]));
   }
-  for (auto& s : switchings) s.has_before = s.has_after = false;  // they are known for the voltage only
+  for (auto& s : switchings) s.has_before = s.has_after = false;  // known for the voltage only
   return {power, std::move(switchings)};
 }
 

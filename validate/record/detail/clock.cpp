@@ -65,7 +65,7 @@ void count_days(RawRecord& raw, RawColumn& time, double first, const Clock& cloc
 
 void settle_clock(RawRecord& raw) {
   constexpr double kMostOfASample =
-      1.2e-5;  // [days], 1 s. Times in the range of kDays with a longer step are seconds.
+      1.2e-5;  // [days] = 1 s; times in the range of kDays with longer steps are seconds
   RawColumn& time = time_column(raw);
   auto& unit = time.meaning.unit;
   if (unit && unit != Unit::day) return;
