@@ -387,8 +387,8 @@ EventComparison compare_event(const plant::PlantModel& model, const Measurement&
     measure_channels(model, PlaybackInput::voltage, options.play_in, other);
     return other;
   };
-  // The initial state is fitted only if the residuals are then within noise; an incomplete model would bias
-  // it.
+  // The initial state is fitted only if the residuals are then within noise, because an incomplete model
+  // would bias it.
   const auto fitted = [&] {
     const auto events = noise::with_noise(
         model, event::prepare_events(model, {measurement.switched()}, measurement.preparation()));

@@ -114,9 +114,10 @@ std::vector<double> frequency_of(const std::vector<double>& t, const std::vector
                                  double nominal);
 
 /// Returns the time windows: pre-event, fault, and 0-1 s, 1-5 s and > 5 s after the last switching. The fault
-/// lies between the first and the last switching; there is none with a single switching. Without a switching,
-/// the windows count from the start of the record (0-1 s, 1-2 s, 2-6 s and > 6 s with a pre-event of 1 s).
-/// Windows without a sample are omitted, and no window begins or ends with samples that are left out.
+/// window lies between the first and the last switching. With a single switching there is no fault window.
+/// Without a switching, the windows count from the start of the record (0-1 s, 1-2 s, 2-6 s and > 6 s with a
+/// pre-event of 1 s). Windows without a sample are omitted, and no window begins or ends with samples that
+/// are left out.
 std::vector<Window> event_windows(const record::Record& record,
                                   const std::vector<switching::Switching>& switchings, double pre_event,
                                   const std::vector<char>& left_out = {});

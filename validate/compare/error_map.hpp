@@ -78,8 +78,8 @@ struct ErrorMapOptions {
 };
 
 /// Projects each window's residual on the window's orthonormal cosines (DCT-II; mode k has k half periods). A
-/// mode belongs to the band of its frequency; white noise gives every mode the same variance. A band is empty
-/// if the window is shorter than half a period of the band's upper edge; the window's mean then counts in
+/// mode belongs to the band of its frequency. White noise gives every mode the same variance. A band is empty
+/// if the window is shorter than half a period of the band's upper edge. The window's mean then counts in
 /// `all` only. After the first window, the variance of the mean includes the error of the operating point.
 /// Large components leak: a normalised RMS of 100 in one band adds about 3 two bands away.
 ErrorMap error_map(std::span<const double> t, std::span<const double> residual,

@@ -92,7 +92,8 @@ void keep_worse(std::vector<MapRow>& worst, const std::vector<MapRow>& row) {
     if (!row[k].bin->empty() && (!worst[k].bin || ratio(row[k]) > ratio(worst[k]))) worst[k] = row[k];
 }
 
-/// Returns " This bin exceeds its limit in n of m events.", with m events that have the bin; empty if m is 1.
+/// Returns " This bin exceeds its limit in n of m events.", where m is the number of events that have the
+/// bin; empty if m is 1.
 std::string events_beyond(const std::vector<LabelledMap>& maps, const std::string& channel,
                           const std::string& window, std::size_t band) {
   int beyond = 0, all = 0;

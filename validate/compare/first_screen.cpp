@@ -61,7 +61,7 @@ std::string marks_text(const FirstScreen& s) {
       s.after ? fmt::format(", {} → {}", s.before->name, s.after->name) : "", judged.name);
 }
 
-/// Returns the bars of each event's worst channel before and after.
+/// Returns the bars of each event's worst channel before and after the change of the model.
 report::Bars fall(const FirstScreen& s) {
   report::Bars bars{fmt::format("RMS error in multiples of the noise, worst channel of each event: {} → {}",
                                 s.before->name, s.after->name),
@@ -83,8 +83,8 @@ report::Bars fall(const FirstScreen& s) {
   return bars;
 }
 
-/// Shades the window in which the channel is furthest above its noise bound, and extends the view so that it
-/// is visible.
+/// Shades the window in which the channel is furthest above its noise bound, and extends the view so that
+/// this window is visible.
 void shade_worst(report::Curves& c, const FirstScreen& s, std::size_t event, const std::string& name) {
   const EventComparison& of = s.before->events[event];
   const ChannelError error = channel_error(s.before->fitness, of, *find_channel(s.before, event, name));

@@ -46,7 +46,7 @@ struct FirstScreen {
   report::Tone tone = report::Tone::bad;  ///< colour of the headline
   const Played* before = nullptr;         ///< shown model; with `after`: the submitted one
   const Played* after = nullptr;          ///< changed model; null: none
-  bool judge_before = false;              ///< chips have the colour of `before`, else of `after`
+  bool judge_before = false;              ///< chips show the verdict on `before`; false: on `after`
   EventUse use = {};                      ///< events of the fit and of its verification
   std::string next = {};                  ///< next command; empty: none
 };

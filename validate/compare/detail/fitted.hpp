@@ -7,8 +7,8 @@
 namespace swingbank::validate::compare {
 
 /// Noise model and initial state of the fit. Voltage noise passes through the plant: with an integrating
-/// regulator it moves P and Q by many times their own noise. If it were treated as white noise, it would bias
-/// the switching times.
+/// regulator it moves P and Q by many times their own noise. If this response were treated as white noise, it
+/// would bias the switching times.
 enum class Fitted {
   in_white_noise,  ///< the noise of P and Q is white
   in_slow_noise,   ///< the noise of P and Q includes the plant's response to voltage noise

@@ -11,7 +11,7 @@ namespace swingbank::validate::compare {
 namespace {
 
 constexpr std::size_t kRuns =
-    24;  ///< largest number of playbacks for P and for Q; adjacent samples share one
+    24;  ///< largest number of playbacks for P, and for Q; adjacent samples share a playback
 
 class PowerDoubt {
  public:
@@ -49,7 +49,7 @@ class PowerDoubt {
   /// estimated from the error when an adjacent sample is itself extrapolated from the samples behind it.
   void beside_switchings(std::vector<double> record::Record::*power) {
     constexpr double kOfStep =
-        0.3;  // share of the error over a whole interval, RMS over the switching's position
+        0.3;  // RMS over the switching's position, as a fraction of the error over a whole interval
     for (const switching::Switching& s : e_.switchings) {
       const auto next =
           static_cast<std::ptrdiff_t>(std::ranges::upper_bound(e_.record.t, s.time) - e_.record.t.begin());
