@@ -12,8 +12,8 @@ namespace swingbank::validate::switching {
 /// noise, because they are the change of V times the machine's admittance.
 std::size_t before_power_step(const record::Record& record, std::size_t n);
 
-/// Returns the time of the last sample before V leaves its level of the first 0.5 s, by a step or gradually
-/// [s].
+/// Returns the time [s] of the last sample before V leaves its level of the first 0.5 s, by a step or
+/// gradually.
 double steady_until(const record::Record& record);
 
 /// Criterion for a signal that leaves its level.

@@ -30,7 +30,7 @@ std::vector<StepInterval> find_filtered_steps(const record::Record& r) {
 }
 
 /// Returns the change of the voltage phasor over sample interval k minus the mean of the adjacent changes
-/// [pu]. The ratio of the steps of current and voltage has it as denominator.
+/// [pu]. It is the denominator of the ratio of the steps of current and voltage.
 double step_height(const record::Record& r, std::size_t k) {
   if (k < 1 || k + 2 >= r.t.size()) return 0;
   const auto step = [&](std::size_t i) {

@@ -59,7 +59,8 @@ bool passed_filter_by_evidence(const std::vector<record::Record>& records, doubl
   return passed_filter(if_filtered);
 }
 
-/// The same as the public function, from the steps of each record's instrument.
+/// Returns the result of the public step_shape_of() from the steps of each record, which are already
+/// computed.
 StepShape step_shape_of(const std::vector<record::Record>& records, const std::vector<VoltageSteps>& steps,
                         double threshold) {
   bool any_filtered = false, any_sharp = false, any_open = false;

@@ -8,7 +8,8 @@
 
 namespace swingbank::validate::switching {
 
-/// Change of the network with a step of the voltage. Samples at `time` itself count as before it.
+/// Change of the network with a step of the voltage. A sample at `time` itself counts as before the
+/// switching.
 struct Switching {
   double time = 0;                             ///< [s]
   double uncertainty = 0;                      ///< the time lies within ± uncertainty [s]; 0: known

@@ -16,10 +16,10 @@ namespace {
 
 constexpr int kLeastKnots = 3;  ///< minimum number of knots in a reconstructed segment
 constexpr int kAbout = 4;       ///< samples of a cluster beyond the longest window, on either side
-constexpr int kNarrowings = 5;  ///< rounds of the search for switching times; each halves the width
-/// After a change of the roughness, the search resumes at the width of this round.
+constexpr int kNarrowings = 5;  ///< iterations of the search for switching times; each halves the width
+/// After a change of the roughness, the search resumes at the width of this iteration.
 constexpr int kAgain = 2;
-constexpr int kLastNarrowings = 5;    ///< further rounds with the selected window
+constexpr int kLastNarrowings = 5;    ///< further iterations with the selected window
 constexpr double kSameLength = 1e-3;  ///< relative tolerance between a window and a sample interval
 /// Roughness of a grid's voltage between switchings [pu^2/s^3]. It is about 10 for a swing of 0.1 pu at 1 Hz.
 /// During the subtransient after a fault, which lasts a few hundredths of a second, it is several hundred.
@@ -102,7 +102,7 @@ class SwitchingTimeSearch {
       grid(best, i, about, step, steps(i), steps(i + 1));
     }
   }
-  /// Refines from `width` [s] in `rounds` rounds, at the present roughness.
+  /// Refines from `width` [s] in `rounds` iterations, at the present roughness.
   void run(BroughtBack& best, double width, int rounds) const {
     constexpr int kSide = 2;
     best.curve.emplace(cluster_.stretch, window_, best.switching_times, best.roughness);
@@ -133,7 +133,7 @@ class SwitchingTimeSearch {
   const FilterWindow& window_;
 };
 
-/// Returns the width of the search for switching times after `rounds` rounds [s].
+/// Returns the width [s] of the search for switching times after `rounds` iterations.
 double width_after(const Cluster& c, int rounds) { return c.stretch.step / 2 / (1 << rounds); }
 
 bool has_given_times(const SwitchedRecord& e) { return !e.record.switched.empty(); }
@@ -196,8 +196,8 @@ Attempt attempt(const std::vector<SwitchedRecord>& events, const std::vector<Clu
   return a;
 }
 
-/// Returns the log of the fraction of a switching time's uncertainty interval, of length `open` [s], in which
-/// the evidence is near its maximum (Laplace approximation).
+/// Returns the log Occam factor of a switching time. The factor is the fraction of the time's uncertainty
+/// interval (length `open` [s]) in which the evidence is near its maximum (Laplace approximation).
 double log_occam_factor(const Cluster& c, const FilterWindow& window, const BroughtBack& b,
                         std::size_t time_index, double open) {
   const double aside = c.stretch.step / 50;
@@ -256,7 +256,7 @@ void keep(SwitchedRecord& e, const std::vector<char>& stays) {
         });
   if (std::ranges::count(e.filtered_samples, 1) == 0) e.filtered_samples.clear(), e.clean = {};
 }
-/// The same for all events. Drops clusters without remaining switching times.
+/// Applies drop_swings() to the clusters of all events. Drops clusters without remaining switching times.
 void drop_swings(std::vector<SwitchedRecord>& events, std::vector<Cluster>& clusters, Attempt& a) {
   std::vector<std::vector<char>> stays(events.size());
   for (std::size_t i = 0; i < clusters.size(); ++i) {

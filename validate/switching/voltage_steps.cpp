@@ -46,8 +46,8 @@ bool is_swing(const std::vector<Complex>& step, const std::vector<double>& d, st
 struct StepSpan {
   std::size_t first, last;
 };
-/// Removes intervals at both ends where the voltage only drifts, as in a short fault: consecutive steps are
-/// equal.
+/// Removes intervals at both ends where the voltage only drifts (consecutive steps are equal), as in a short
+/// fault.
 StepSpan trimmed(const std::vector<Complex>& step, StepSpan span, double limit) {
   double largest = 0;
   for (std::size_t i = span.first; i <= span.last; ++i) largest = std::max(largest, std::abs(step[i]));
@@ -211,9 +211,9 @@ SwitchingTimes VoltageSteps::find(double threshold, StepShape shape) const {
   return found;
 }
 
-/// Returns whether a filter has spread a step over several intervals, so that a large part lies in a
-/// neighbouring interval. A smaller part may also come from a subtransient, whose further decay is hidden if
-/// the fault lasts only two samples.
+/// Returns whether a filter has spread a step over several intervals, so that a large part of the step lies
+/// in a neighbouring interval. A smaller part may also come from a subtransient, whose further decay is
+/// hidden if the fault lasts only two samples.
 bool VoltageSteps::is_shared_out(const Switching& switching) const {
   std::size_t m = 1;
   for (std::size_t k = 1; k + 1 < step_.size(); ++k)

@@ -11,7 +11,7 @@ namespace swingbank::validate::switching {
 /// Changes of a record's voltage phasor over its sample intervals.
 class VoltageSteps {
  public:
-  /// Computes the changes of a record, which must outlive them.
+  /// Computes the changes of a record, which must outlive this object.
   explicit VoltageSteps(const record::Record& record) : VoltageSteps(record, record.theta) {}
   /// The same with another angle [rad].
   VoltageSteps(const record::Record& record, const std::vector<double>& theta);
@@ -19,12 +19,13 @@ class VoltageSteps {
   /// Change over each sample interval [pu].
   [[nodiscard]] const std::vector<Complex>& changes() const { return step_; }
 
-  /// Finds the sample intervals with a voltage step. Its change differs from both neighbouring changes by
-  /// more than `threshold` [pu] and more than ten times the median difference (noise). Each switching time is
-  /// the middle of its interval, with half the interval as uncertainty. If there are none, finds small
-  /// isolated steps, as from the loss of a distant generator. Such a step deviates from the extrapolated
-  /// voltage by at least a twentieth of `threshold`. Over ten samples on either side, or to the start of the
-  /// record, no deviation due to noise or a swing exceeds a fifth of it.
+  /// Finds the sample intervals with a voltage step. The change over such an interval differs from both
+  /// neighbouring changes by more than `threshold` [pu] and more than ten times the median difference
+  /// (noise). Each switching time is the middle of its interval, with half the interval as uncertainty. If
+  /// there are no such intervals, finds small isolated steps, as from the loss of a distant generator. Such a
+  /// step deviates from the extrapolated voltage by at least a twentieth of `threshold`. Over ten samples on
+  /// either side, or to the start of the record, no deviation due to noise or a swing exceeds a fifth of the
+  /// step's deviation.
   [[nodiscard]] std::vector<Switching> detect(double threshold = kStepThreshold) const;
 
   /// Finds switchings, also if a filter has spread their steps over two or three sample intervals. With

@@ -11,7 +11,8 @@ namespace {
 constexpr double kAnyVoltage = 1;  ///< prior standard deviation of a coefficient about 0 [pu]
 
 double square(double x) { return x * x; }
-/// Returns the cubic B-splines on a uniform grid that are non-zero in a span, at u = 0 ... 1.
+/// Returns the values, at u = 0 ... 1 in a span, of the four cubic B-splines that are non-zero there (uniform
+/// grid).
 std::array<double, 4> cubics(double u) {
   const double a = 1 - u;
   return {a * a * a / 6, (3 * u * u * u - 6 * u * u + 4) / 6, (3 * a * a * a - 6 * a * a + 4) / 6,
