@@ -110,7 +110,7 @@ struct Verdict {
   std::string sentence;  ///< sentence
   Tone tone;             ///< colour
 };
-/// Chips of the errors of all events and channels.
+/// Chips (coloured labels) with the error of each channel of each event.
 struct Chips {
   /// One channel of one event.
   struct Chip {

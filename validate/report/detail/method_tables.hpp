@@ -18,8 +18,9 @@ std::vector<Table> overview_tables(const std::vector<Task>& tasks);
 Table method_table(const Task& task);
 /// One row per excluded generator, one column per method, at one noise level.
 Table generator_table(const Task& task, double noise);
-/// Generalisation ratio with the same rows and columns: MSE on the excluded generator / MSE on validation
-/// rows of the training generators, mean over seeds. No rows if nothing was trained.
+/// Table of generalisation ratios with the rows and columns of generator_table(): MSE on the excluded
+/// generator / MSE on validation rows of the training generators, mean over seeds. No rows if nothing was
+/// trained.
 Table unseen_table(const Task& task, double noise);
 /// One row per parameter with raw and relative error of each method, at one noise level.
 Table parameter_comparison(const Task& task, double noise);
