@@ -9,7 +9,7 @@ namespace {
 constexpr double kGuess = 2e-3;  ///< relative standard deviation of V near a switching
 /// Ratio of the variance of a reconstructed sample of V to that of a sample near a switching.
 constexpr char kFiltered = 40;
-/// Lower limit of the share of a channel's own noise in its variance.
+/// Lower limit of the fraction of a channel's variance that is its own noise.
 constexpr double kLeastOwnNoise = 0.01;
 /// Slow noise is negligible up to this variance, relative to that of the white noise.
 constexpr double kMatters = 1e-3;

@@ -20,8 +20,8 @@ struct VoltageNoise {
   /// not respond to the fluctuation; 0: they respond as the model does, so the fluctuation is real.
   double share = 0;
   Eigen::Vector3d doubt = Eigen::Vector3d::Zero();  ///< relative standard deviation of each variance
-  /// Share of each channel's own noise in its variance, by playin::Output. The rest is the response to the
-  /// noise of the voltage. slow_noise() applies a lower limit of 0.01.
+  /// Fraction of each channel's variance that is its own noise, by playin::Output. The rest is the response
+  /// to the noise of the voltage. slow_noise() applies a lower limit of 0.01.
   std::array<double, playin::kOutputs> own{};
   /// Returns the sensitivity of the measured P and Q to V (relative) and theta [rad] at constant current,
   /// times `carried`: [channel][V, theta], in the channels' units.
