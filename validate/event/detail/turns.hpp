@@ -11,8 +11,8 @@ constexpr double kFarthestTurn = 0.5;
 /// Removes the peaks of f that phase jumps cause over the width of the meter's window. If f around a
 /// switching deviates from the extrapolation of the samples on the same side, the extrapolation replaces f,
 /// and the angle is integrated again. The replaced samples after a switching are not compared, because the
-/// extrapolation is uncertain there. No effect if the angle was measured, or if the voltage steps are
-/// filtered, too.
+/// extrapolation is uncertain there. No effect if the angle was measured, or if voltage samples are marked as
+/// filtered.
 void drop_peaks(FitEvent& event);
 
 /// Estimates the phase jump (Switching::turn) at each switching by least squares of P and Q of the next
