@@ -163,8 +163,8 @@ class Check : Findings {
     return true;
   }
 
-  /// Returns the larger range of P and Q in the first `samples`, less the range of the noise [pu on the
-  /// record's base].
+  /// Returns the larger of the ranges of P and Q in the first `samples`, less the range of the noise [pu on
+  /// the record's base].
   [[nodiscard]] double moves_within(std::size_t samples) const {
     double most = 0;
     for (const auto& [y, noise] : {std::pair{&r_.P, signals_.P.white}, {&r_.Q, signals_.Q.white}}) {

@@ -36,7 +36,7 @@ std::vector<Finding> read_into(RecordSet& set, const std::string& file, const pl
 }
 
 /// Records of one source have the same mistake in their columns. If a mistake explains the steps of all
-/// records whose steps are inconsistent, it replaces the likeliest one of each record.
+/// records whose steps are inconsistent, it replaces the likeliest mistake of each record.
 void agree(std::vector<std::vector<Finding>>& findings) {
   std::vector<Finding*> inconsistent;
   for (auto& of_record : findings)

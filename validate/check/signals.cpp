@@ -39,7 +39,7 @@ Line fit_line(std::span<const double> y) {
 }
 
 /// Estimates the noise of a channel. White noise is estimated from second differences. Filtered noise is too
-/// slow for them; it is estimated from the standard deviation of the quietest second.
+/// slow for second differences, so it is estimated from the standard deviation of the quietest second.
 void find_noise(const std::vector<double>& y, double rate, SignalFacts& facts) {
   std::vector<double> second;
   for (std::size_t k = 1; k + 1 < y.size(); ++k) second.push_back(std::abs(y[k - 1] - 2 * y[k] + y[k + 1]));
@@ -104,8 +104,8 @@ void find_event(const record::Record& r, Signals& s) {
   const std::pair<const std::vector<double>*, SignalFacts*> channels[] = {
       {&r.V, &s.V}, {&r.P, &s.P}, {&r.Q, &s.Q}};
   for (const auto& [y, facts] : channels) {
-    // Six standard deviations: Gaussian noise stays below five in ten thousand samples. The minimum of 1e-4
-    // pu covers rounding in records without noise.
+    // Six standard deviations, because ten thousand samples of Gaussian noise stay below five. The minimum of
+    // 1e-4 pu covers rounding in records without noise.
     const double reach = std::max(6 * facts->noise, 1e-4);
     first = std::min(
         first, switching::leaves(*y, {.level = median_in(std::span(*y).first(10)), .reach = reach * 1.1}));
