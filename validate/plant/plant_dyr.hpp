@@ -14,8 +14,8 @@ namespace swingbank::validate::plant {
 std::string dyr_text(const PlantModel& model, const std::vector<std::string>& head, const std::string& where,
                      Problems& problems);
 
-/// Returns the same as lines of a PSLF .dyd, which also contain the bus's name and nominal voltage [kV]. A
-/// missing voltage becomes a problem.
+/// Returns the same records as lines of a PSLF .dyd, which also contain the bus's name and nominal voltage
+/// [kV]. A missing voltage becomes a problem.
 std::string dyd_text(const PlantModel& model, const std::vector<std::string>& head,
                      const sim::formats::DydPlace& place, const std::string& where, Problems& problems);
 

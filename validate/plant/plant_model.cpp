@@ -245,8 +245,8 @@ sim::Conventions read_conventions(Config& config, double hz) {
   return read;
 }
 
-/// Adds all parameters of these effects to PlantModel::defaults: the effects replace others of the case and
-/// have default values.
+/// Adds all parameters of these effects to PlantModel::defaults, because the effects replace others of the
+/// case and have default values.
 void note_defaults(PlantModel& model, const std::vector<std::string>& effects) {
   for (const auto& name : effects)
     for (const auto& p : model.library.find(name)->parameters)
