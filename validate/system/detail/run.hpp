@@ -46,7 +46,7 @@ sim::network::Event moved(sim::network::Event e, Move move) {
   for (auto& s : e.setpoint_steps) s.time = move(s.time);
   return e;
 }
-/// Returns the event with each of its switching times `written`, in ascending order, replaced by that of
+/// Returns the event with its switching times `written`, in ascending order, replaced one by one by those of
 /// `to`.
 inline sim::network::Event moved(const sim::network::Event& event, const std::vector<double>& written,
                                  const std::vector<double>& to) {
