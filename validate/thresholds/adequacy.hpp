@@ -5,11 +5,11 @@
 // calibrate and add refit the parameters, then test the reduced chi-square of each event, held out or not.
 // The limit allows for the event's coloured noise and short pre-event window. Local errors may average out,
 // because the next question is which parameter is wrong, not at which second. Command diagnose refits the
-// parameters and decides whether to name an effect. Besides chi2 over all events it tests slow remainders,
-// steady oscillations and the evidence of free inputs. Effects of 40 times the noise have been hidden in a
-// reduced chi-square of 1.07. A named effect must have sufficient evidence. The criteria differ by the refit
-// and by the consequence of a rejection, so they are not unified. Every verdict reports the criterion that
-// decided it; all limits are in thresholds.hpp.
+// parameters and decides whether to name an effect. Besides chi2 over all events it tests slow components and
+// steady oscillations of the residual, and the evidence of inputs that are free in time. Effects of 40 times
+// the noise have been hidden in a reduced chi-square of 1.07. A named effect must have sufficient evidence.
+// The criteria differ by the refit and by the consequence of a rejection, so they are not unified. Every
+// verdict reports the criterion that decided it; all limits are in thresholds.hpp.
 #include <string>
 #include <string_view>
 
@@ -22,7 +22,7 @@ enum class Criterion {
   bins,          ///< compare: no bin of the error maps exceeds its limit
   events,        ///< calibrate, add: no event's reduced chi-square exceeds its limit
   reduced_chi2,  ///< diagnose: reduced chi-square over all events
-  slow,          ///< diagnose: slow remainder of the residual
+  slow,          ///< diagnose: slow components of the residual
   line,          ///< diagnose: reduction of chi2 by a steady oscillation
   free_input,    ///< diagnose: evidence of a torque or field voltage that is free in time
   named_effect,  ///< diagnose: evidence of the named effect
@@ -71,7 +71,7 @@ Ruling judged_by_events(const Events& events) {
 /// Measures of the residual of a refitted model.
 struct Refitted {
   double reduced_chi2;   ///< reduced chi-square over all events
-  double slow;           ///< slow remainder [standard deviations]
+  double slow;           ///< excess of the residual's slow power over white noise [standard deviations]
   double line;           ///< reduction of chi2 by a steady oscillation, less its penalty [chi2]
   double torque, field;  ///< evidence of each input, free in time [chi2]
 };

@@ -9,7 +9,8 @@
 namespace swingbank::validate::thresholds {
 namespace {
 
-/// Appends the thresholds of one struct. It contains only thresholds, so it has the layout of an array.
+/// Appends the thresholds of one struct. The struct contains only thresholds, so it has the layout of an
+/// array.
 template <class Stage>
 void add(const Stage& stage, std::vector<Threshold>& all) {
   static_assert(sizeof(Stage) % sizeof(Threshold) == 0);

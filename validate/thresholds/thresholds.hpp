@@ -1,7 +1,7 @@
 #pragma once
 // Every number that decides a verdict: limits of noise, evidence, prediction and adequacy. Each struct is a
 // group of thresholds; `swingbank diagnose --thresholds` prints them all. Numbers that only control the
-// effort of a search (steps, starts, rounds) are defined with the search.
+// effort of a search (steps, starts, iterations) are defined with the search.
 #include <string_view>
 
 namespace swingbank::validate::thresholds {
@@ -88,7 +88,7 @@ struct HeldOut {
   Threshold alone{"held_out.alone", 0.8, "share of the cost reduction on held-out events",
                   "an effect acts in one event only if that event has a larger share; other events then "
                   "cannot predict it"};
-  /// Share of that event's chi2 that must remain when the fit excludes the event [-].
+  /// Share of chi2 that must remain in the event of `alone` when the fit excludes this event [-].
   Threshold unpredicted{"held_out.unpredicted", 0.5, "share of that event's chi2",
                         "an effect acts in one event only if, in addition, a larger share of that event's "
                         "chi2 remains when the fit excludes the event"};
@@ -148,7 +148,8 @@ struct Search {
       "search.nearly_fits", 1.5, "chi2 per value",
       "hypotheses with a smaller reduced chi-square are fitted with the whole plant, whatever "
       "their rank in the identification (decision 61)"};
-  /// Share of the better input's gain in chi2, from which blocks of the other input are identified too [-].
+  /// Least share of the better inferred input's gain in chi2 at which blocks of the other input (torque or
+  /// field voltage) are identified too [-].
   Threshold fair{"search.fair", 0.2, "share of the best gain",
                  "blocks of a side are identified if its inferred input reduces chi2 by at least this "
                  "share (decision 61)"};
@@ -166,7 +167,7 @@ struct UserModels {
   Threshold explains{"user_models.explains", 0.3, "share of the base model's chi2",
                      "largest share that may remain with the inferred input if a user-defined model is "
                      "searched: a reduction by 70 % (decision 21)"};
-  /// Largest ratio of chi2 at which models of the other input are searched too [-].
+  /// Largest ratio of chi2 at which models of the other inferred input are searched too [-].
   Threshold as_much{"user_models.as_much", 1.5, "ratio of chi2",
                     "largest ratio of the chi2 of the other inferred input to that of the better one, if "
                     "both explain the residual equally well (decision 21)"};
@@ -187,8 +188,8 @@ struct UserModels {
 };
 inline constexpr UserModels user_models;  ///< the thresholds in use
 
-/// `swingbank add`: the user has named the effect, so one hypothesis competes with one other. Diagnose
-/// requires four times the evidence because it selects the best of about thirty, some of which fit by chance.
+/// `swingbank add`: the user has named the effect, so only two hypotheses compete. Diagnose requires four
+/// times the evidence because it selects the best of about thirty, some of which fit by chance.
 struct Addition {
   /// Evidence above which a named effect is added [chi2].
   Threshold strong{"addition.strong", 10, "chi2",
@@ -221,7 +222,7 @@ struct Parameters {
   Threshold agrees{
       "parameters.agrees", 0.01, "share of the cost",
       "largest difference from the best start at the same optimum; agrees_least if that is more"};
-  /// Least value of that difference [chi2].
+  /// Least absolute difference in cost for `agrees` [chi2].
   Threshold agrees_least{"parameters.agrees_least", 1, "chi2", "cost of one standard error of a parameter"};
   /// Change above which the verdict names a calibrated parameter [standard errors].
   Threshold moved{"parameters.moved", 2, "standard errors",
@@ -283,7 +284,7 @@ struct DtrTest {
       "not compared after the last switching (RTE DTR, data sheet I16, comparison with measurements)"};
 };
 inline constexpr DtrTest dtr_test;  ///< the limits in use
-/// The same for a simulated reference.
+/// The corresponding limits for a comparison with a simulated reference.
 struct DtrSimulation {
   /// Limit of the maximum absolute error before the first switching [% of MVA].
   Threshold pre_fault_mxe{
