@@ -31,7 +31,7 @@ class NoiseModel {
   [[nodiscard]] const EventNoise& of(std::size_t event) const { return measured_->at(event); }
   /// Number of events.
   [[nodiscard]] std::size_t size() const { return measured_ ? measured_->size() : 0; }
-  /// Returns whether both are the same estimate; equal numbers do not suffice.
+  /// Returns whether both objects share one estimate; equal numbers do not suffice.
   friend bool operator==(const NoiseModel&, const NoiseModel&) = default;
 
  private:

@@ -26,7 +26,7 @@ class NoiseTransfer {
 
   event::FitEvent quiet_, noisy_;
   EventNoise noise_;  ///< noise of both events
-  double times_ = 0;  ///< ratio of the number of values of all events to that of the minute
+  double times_ = 0;  ///< number of values in all events over the number in the simulated minute
   double own_ = 0;
 };
 

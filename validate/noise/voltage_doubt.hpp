@@ -6,9 +6,9 @@ namespace swingbank::validate::noise {
 
 /// Shapes of the residual that errors of the played-in voltage cause in an event's channels, one standard
 /// deviation each. The plant is linearised about the start. Two shapes are for errors of the pre-event means
-/// of V and theta. Random draws, whose variances add up to that of the noise, are for the voltage noise
-/// transferred through the plant. Two shapes (V and theta) are for each sample next to a switching and for
-/// each reconstructed sample.
+/// of V and theta. Random realisations, whose variances add up to that of the noise, represent the voltage
+/// noise transferred through the plant. Two shapes (V and theta) are for each sample next to a switching and
+/// for each reconstructed sample.
 struct VoltageDoubt {
   using Shape = std::vector<std::vector<double>>;  ///< [channel][sample]
   std::vector<Shape> shapes;                       ///< each one standard deviation

@@ -1,6 +1,6 @@
 #pragma once
-// Immutable events with one estimate of their noise. A fit takes both together. Another noise estimate gives
-// a new object and leaves this one unchanged.
+// Immutable events with one estimate of their noise. A fit takes events and noise together. Another noise
+// estimate gives a new object and leaves this one unchanged.
 #include <boost/iterator/indirect_iterator.hpp>
 #include <cstddef>
 #include <memory>

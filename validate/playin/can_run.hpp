@@ -8,9 +8,9 @@ namespace swingbank::validate::playin {
 bool can_run(const sim::plant::Block& block);
 /// Returns whether this holds for all blocks of a plant, including its instruments.
 bool can_run(const sim::plant::Plant& plant);
-/// Returns whether the plant can run and its parameters are physically possible (Effect::unphysical).
-/// Violations that `given`, the submitted model with the same blocks, already contains are allowed, so that a
-/// search may return to them.
+/// Returns whether the plant can run and its parameters are physically possible (Effect::unphysical). A
+/// violation is allowed if `given` (the submitted model with the same blocks) already contains it, so that a
+/// search may return to the submitted values.
 bool can_exist_beside(const sim::plant::Plant& plant, const sim::plant::Plant& given);
 
 }  // namespace swingbank::validate::playin

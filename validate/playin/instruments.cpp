@@ -178,8 +178,8 @@ class Observed {
     inner_.record = &fine_;
     inner_.step_limit = run_.step_limit * kFine;
   }
-  /// Converts the sensitivities to the initial P and Q of the plant into those to the measured initial
-  /// values.
+  /// Converts the sensitivities to the plant's initial P and Q into sensitivities to the measured initial P
+  /// and Q.
   void turn_starts(Response& r) const {
     const auto find = [&](Kind kind) {
       return std::ranges::find(parameters_, kind, &SensitivityParameter::kind) - parameters_.begin();

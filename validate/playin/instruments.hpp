@@ -19,8 +19,8 @@ Response observe(const PlaybackRun& run, std::span<const SensitivityParameter> p
 
 /// Returns whether the effect of an instrument with parameters away from their null values can be removed.
 /// This requires an output that is proportional to the input and deterministic (unlike noise or
-/// quantisation), and that changes the voltage by a constant factor only. It does not hold for a filter: fits
-/// exclude the samples within its window around steps.
+/// quantisation), and that changes the voltage by a constant factor only. A filter does not meet this
+/// requirement, so fits exclude the samples within its window around steps.
 bool can_be_taken_back(const sim::Effect& instrument);
 /// Returns whether an instrument changes quantities that a playback uses: V or I, and thereby P and Q. If
 /// `integrated_angle`, an angle that was integrated from a frequency is included.

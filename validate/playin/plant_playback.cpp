@@ -246,10 +246,10 @@ class Solver {
       return std::abs(sim::value_of(guards[static_cast<std::size_t>(found.guard)]));
     };
     double low = height(guards_), high = height(guards_at_end_);
-    int side = 0;  // side of zero of the last guess
+    int side = 0;  // last guess: -1 before the crossing, 1 after it
     for (int round = 0; round < kMostRounds && found.after - found.before > kTimeError; ++round) {
       const double wide = found.after - found.before, guess = found.before + wide * low / (low + high);
-      // shifted a little, so that the next guess lies on the other side of zero
+      // shifted a little, so that the next guess lies on the other side of the crossing
       const double middle = std::clamp(guess - 0.4 * side * kTimeError, found.before + 0.01 * kTimeError,
                                        found.after - 0.01 * kTimeError);
       attempt(middle);

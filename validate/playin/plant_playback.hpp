@@ -69,7 +69,7 @@ struct PlaybackRun {
   /// output by differentiation of each step, which at limits need a tolerance of 1e-9.
   std::vector<Output> linear_sensitivities = {};
   /// Trajectory cache: a run without sensitivities stores its trajectory here, and the same run with linear
-  /// sensitivities reuses it. It must be reset when another field changes. Null: no cache.
+  /// sensitivities reuses it. The cache must be reset when another field changes. Null: no cache.
   std::shared_ptr<const TrajectoryCache>* cache = nullptr;
 };
 
@@ -113,8 +113,8 @@ struct Response {
 
 /// Returns the plant's response to the curve. Steps end at every sample, at every switching of the curve, and
 /// at every switching time of an effect. If a switching time is a sensitivity parameter, the sensitivities to
-/// it step there by the difference of the derivatives before and after it. Throws InputError if the operating
-/// point has no steady state or the integration fails.
+/// this time have a step there, equal to the difference of the derivatives before and after it. Throws
+/// InputError if the operating point has no steady state or the integration fails.
 Response simulate_playback(const PlaybackRun& run, std::span<const SensitivityParameter> parameters = {});
 
 /// Inputs of a plant's controls at one point of a run, at the machine's terminal and on its base.

@@ -46,10 +46,10 @@ struct Comtrade {
   std::size_t sample_bytes = 0;  ///< size of a binary sample [bytes]; 0 for ASCII data
 };
 
-/// Returns the record of a configuration and its data; messages contain the two names. Notes report each
-/// contradiction that was resolved: data type, number of samples, truncated last sample, overflow of the time
-/// stamps. Throws InputError with every fault of both files and its line or byte: unknown revisions, invalid
-/// numbers, gaps in the sample numbers, a rate and stamps in different units.
+/// Returns the record of a configuration and its data; messages contain the names of the two files. Notes
+/// report each contradiction that was resolved: data type, number of samples, truncated last sample, overflow
+/// of the time stamps. Throws InputError with every fault of both files and its line or byte: unknown
+/// revisions, invalid numbers, gaps in the sample numbers, a rate and stamps in different units.
 Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::string& cfg_name,
                         const std::string& dat_name);
 

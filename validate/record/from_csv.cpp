@@ -186,8 +186,9 @@ class CsvReader {
     problems_.raise();
   }
 
-  /// Keeps the first of several time columns. "SOC" is a time only with FRACSEC or alone, because it may be a
-  /// state of charge. Finds the column FRACSEC, the fraction of the second according to C37.118.
+  /// Keeps the first of several time columns. "SOC" is read as a time only if the file has FRACSEC or no
+  /// other time column, because it may be a state of charge. Finds the column FRACSEC, the fraction of the
+  /// second according to C37.118.
   void one_time(Record& about) {
     std::vector<std::size_t> times;
     for (std::size_t i = 0; i < headings_.size(); ++i) {

@@ -147,7 +147,8 @@ struct ReadOptions {
   std::vector<std::vector<std::string>> needed = {};
   std::vector<StagedEvent> staged = {};  ///< staged events of all records of the plant
   bool angle = false;  ///< a measured angle is required; false: it may be integrated from f, or be missing
-  /// The breaker opens, so the playback needs no angle and a missing angle is not noted; read_staged sets it.
+  /// The breaker opens, so the playback needs no angle and a missing angle is not noted; read_staged() sets
+  /// this flag.
   bool breaker_opens = false;
 };
 

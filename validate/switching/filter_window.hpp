@@ -27,7 +27,7 @@ class FilterWindow {
 
 /// Returns the candidate windows at a frequency [Hz] and a reporting rate [1/s]. They are triangles and boxes
 /// with half-widths of 0.5 to 2 cycles, and the class M reference filters for this rate and for twice this
-/// rate. The latter applies if every second report was dropped.
+/// rate. The filter for twice the rate applies if every second report was dropped.
 std::vector<FilterWindow> known_windows(double frequency, double rate);
 
 }  // namespace swingbank::validate::switching

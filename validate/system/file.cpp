@@ -256,7 +256,7 @@ SystemCase read_system(Config& c, SystemCase s) {
   if (names.empty())
     c.problem("terminal", "no terminal", "the comparison needs a measurement",
               "give one [terminal.NAME] at least");
-  if (!c.sound()) {  // errors of the grid first; references to it cannot be checked yet
+  if (!c.sound()) {  // errors of the grid first: references to the grid cannot be checked yet
     c.ignore("terminal");
     c.raise();
   }

@@ -130,8 +130,9 @@ class Comparer {
     output(playin::Output::Ifd, r.Ifd, m.Ifd);
   }
   /// Compares the angle relative to the reference terminal. The frequency is compared instead at the
-  /// reference terminal, at all terminals without a reference, and if the record contains a frequency but no
-  /// angle. Returns the model's angle error before the event [rad]; NaN if the angle is not compared.
+  /// reference terminal, at every terminal if no reference is named, and where the record contains a
+  /// frequency but no angle. Returns the model's angle error before the event [rad]; NaN if the angle is not
+  /// compared.
   double angle(std::size_t i, compare::EventComparison& e, bool gone) {
     const auto reference = static_cast<std::size_t>(std::max(s_.reference, 0));
     const record::Record &r = s_.terminals[i].record, &other = s_.terminals[reference].record;

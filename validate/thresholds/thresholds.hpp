@@ -38,7 +38,7 @@ struct Evidence {
   Threshold escape{
       "evidence.escape", 0.5, "share of the leading extension's evidence",
       "if a better optimum of the base model explains more, the diagnosis starts again (decision 61)"};
-  /// Largest difference in chi2 at which a completed fit replaces a short one [chi2].
+  /// Largest excess in chi2 with which a completed fit still replaces a short fit [chi2].
   Threshold same_fit{
       "evidence.same_fit", 0.5, "chi2",
       "a complete fit replaces a short one (without standard errors), unless its chi2 is higher by more than "
@@ -84,7 +84,8 @@ struct HeldOut {
   /// Share of the cost without the effect up to which an unseen event is predicted [-].
   Threshold falls{"held_out.falls", 0.1, "share of the cost without the effect",
                   "a held-out event whose cost falls to this share is predicted too (decision 41)"};
-  /// Share of one event in the total cost reduction, above which the effect acts in this event only [-].
+  /// Share of one event in the total cost reduction, above which the effect is considered to act in this
+  /// event only [-].
   Threshold alone{"held_out.alone", 0.8, "share of the cost reduction on held-out events",
                   "an effect acts in one event only if that event has a larger share; other events then "
                   "cannot predict it"};
@@ -211,7 +212,8 @@ struct Parameters {
   /// Reduction of a parameter's variance by the records, below which the parameter is not identified [-].
   Threshold identified{"parameters.identified", 0.5, "share determined by the records",
                        "parameters, or combinations of parameters, below this are not identified"};
-  /// Least component of a parameter in a combination that is not identified, for it to be listed [-].
+  /// Least component of a parameter in a combination that is not identified, for the parameter to be listed
+  /// [-].
   Threshold member{"parameters.member", 0.3, "component of a unit vector",
                    "least component of a parameter in a combination that is not identified"};
   /// Largest ratio of standard errors for which a further event is recommended [-].

@@ -146,7 +146,7 @@ void drop_peaks(FitEvent& event) {
   if (!dropped) return;
   const std::vector<double> without = record::angle_of_frequency(r);
   for (std::size_t k = 0; k < r.t.size();
-       ++k)  // only the difference: theta may include the angle of a collector
+       ++k)  // only the difference is added: theta may include a collector's angle
     r.theta[k] += without[k] - with_peaks[k];
   r.notes.emplace_back(
       "The frequency has peaks at the switching times: the meter spreads the phase jump over its "

@@ -326,9 +326,9 @@ class LinearSensitivities {
       }
     return false;
   }
-  /// Returns the midpoint of a step, with each state within its limits. It is on the cubic through states and
-  /// derivatives at both ends. A state that is clamped at one end only is on the line with the derivative at
-  /// the other end.
+  /// Returns the midpoint of a step, with each state within its limits. It lies on the cubic through the
+  /// states and derivatives at both ends. A state that is clamped at one end only is extrapolated linearly
+  /// from the end at which it is free.
   Point between(const Point& from, const Point& to, std::vector<double>& x, std::vector<double>& dx) {
     auto& equations = *unperturbed_;
     const double h = to.t - from.t, t = from.t + h / 2;
@@ -355,8 +355,8 @@ class LinearSensitivities {
     return false;
   }
   /// Integrates the sensitivities over an interval of h [s]: (I - h A/2 - h A0/6 + h^2 A^2/6) S = S0 + h A0
-  /// S0/3 + h (B0 + B)/2 - h^2 A B/6. This is the formula with the derivatives of A and B replaced by
-  /// differences between the two nodes.
+  /// S0/3 + h (B0 + B)/2 - h^2 A B/6. This is the two-derivative formula of order 3, in which differences
+  /// between the two nodes replace the derivatives of A and B.
   void step(double h) {
     const Linear& end = meets_a_limit() ? before_ : now_;
     const P8 half(h / 2), third(h / 3), sixth(h / 6), square(h * h / 6);

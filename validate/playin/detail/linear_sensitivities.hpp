@@ -36,8 +36,8 @@ bool can_be_linear(const PlaybackRun& run);
 /// Computes the sensitivities of a response from the run's trajectory. Between two nodes the state
 /// sensitivities obey \f$S' = A S + B\f$, with A and B from finite differences (step 1e-6) at both nodes.
 /// They are integrated by the two-derivative formula of order 3 whose stability function is the (1,2) Pade
-/// approximation (B. L. Ehle, SIAM J. Math. Anal. 4 (1973) 671). It damps modes that are faster than a step
-/// within that step. A step is halved if A changes within it, because a limit begins or ceases to act.
+/// approximation (B. L. Ehle, SIAM J. Math. Anal. 4 (1973) 671). The formula damps modes that are faster than
+/// a step within that step. A step is halved if A changes within it, because a limit begins or ceases to act.
 /// Returns false if the result is not finite.
 bool add_linear_sensitivities(const PlaybackRun& run, std::span<const SensitivityParameter> parameters,
                               const Trace& trace, Response& response);

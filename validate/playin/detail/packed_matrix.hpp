@@ -54,7 +54,7 @@ void add_rows(const Matrix& factors, std::size_t first, std::size_t inner, const
 #pragma GCC unroll 8
   for (std::size_t i = 0; i < count; ++i) to[first + i] = sum[i];
 }
-/// Computes to += factors * from for one pack of columns, from row i on.
+/// Computes `to` += `factors` * `from` for one pack of columns, starting at row i.
 template <std::size_t count = sim::kRegisterBytes == 64 ? 8 : 4>  // sums of these rows stay in registers
 void add_product(const Matrix& factors, std::size_t inner, const P8* from, P8* to, std::size_t i = 0) {
   for (; i + count <= factors.rows(); i += count) add_rows<count>(factors, i, inner, from, to);

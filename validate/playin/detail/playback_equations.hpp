@@ -36,7 +36,7 @@ struct Seeds<sim::D8> {
   static void add(sim::D8& x, std::size_t parameter, double by) { x.d[parameter] += by; }
   static double get(const sim::D8& x, std::size_t parameter) { return x.d[parameter]; }
   /// Returns the magnitude for error control. Sensitivities are weighted by 0.01, because a fit tolerates
-  /// larger errors of them.
+  /// larger errors in sensitivities.
   static double size(const sim::D8& x) {
     double worst = std::abs(x.a);
     for (const double d : x.d) worst = std::max(worst, 1e-2 * std::abs(d));

@@ -175,7 +175,8 @@ EvenRows settle(RawRecord& raw, const ReadOptions& options, Record& r, SampleFau
   return rows;
 }
 
-/// Returns a column's values at fractional row numbers, interpolated linearly; NaN where a number is NaN.
+/// Returns a column's values at fractional row numbers, interpolated linearly; NaN where the row number is
+/// NaN.
 std::vector<double> at_places(const std::vector<double>& values, const std::vector<double>& places) {
   std::vector<double> all;
   all.reserve(places.size());

@@ -10,8 +10,8 @@ namespace swingbank::validate::record {
 /// sample. The result is noted.
 void settle_clock(RawRecord& raw);
 
-/// Adds a problem, and returns true, if the time unit is probably wrong. It is if the sample interval [s] is
-/// too long for any swing, or if a record in ms or a smaller unit is too short.
+/// Adds a problem, and returns true, if the time unit is probably wrong: the sample interval [s] is too long
+/// for any swing, or a record in ms or a smaller unit is too short.
 bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const ReadOptions& options,
                  const std::string& file, Problems& problems);
 

@@ -138,7 +138,7 @@ constexpr Alias kAliases[] = {
     {"currentangle", Quantity::phi},
 };
 
-/// Headings that consist of a unit and yet identify their quantity.
+/// Headings that consist of a unit only, which identifies the quantity.
 constexpr struct {
   std::string_view name;
   Quantity quantity;

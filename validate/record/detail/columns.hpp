@@ -30,7 +30,7 @@ std::optional<ColumnMeaning> column_meaning(std::string_view heading, std::strin
 /// Returns the quantity denoted by a user's word ("V", "omega"), without unit.
 std::optional<ColumnMeaning> quantity_of(std::string_view word);
 
-/// Returns a unit of the quantity: `unit` if that is such a unit, otherwise the unit at the end of the
+/// Returns the unit of a column: `unit` if the quantity can have it, otherwise the unit at the end of the
 /// heading ("BUS1_kV", "GSU_T1.MW", "Pgen [MW]").
 std::optional<Unit> unit_in(Quantity quantity, std::string_view heading, std::string_view unit);
 

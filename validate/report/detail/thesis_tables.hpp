@@ -8,7 +8,7 @@ namespace swingbank::validate::report {
 
 struct ThesisTable {
   std::string_view number, title, machine;
-  double train_rows;  ///< IV: 60 % of the 390,000 stable of 720,000 runs; V, VI: nine tenths of 60,000
+  double train_rows;  ///< IV: 60 % of 390,000 stable runs (of 720,000); V, VI: 90 % of 60,000 runs
 };
 inline constexpr std::array<ThesisTable, 3> kThesisTables = {{
     {"IV", "IEEE 14-bus, GENROU at one bus", "GENROU", 234e3},
