@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-/// Size of a change for its Jacobian column, relative to the effect's start value.
+/// Change of a parameter for the finite difference of its column, relative to the effect's start value.
 constexpr double kChangeShare = 0.05;
 
 /// An effect and its columns: one for the whole effect and, if it has several parameters, one for each of

@@ -19,15 +19,15 @@ namespace {
 
 using playin::Output;
 
-/// Assumed noise of channels that are not recorded [pu]: 0.1 % of rated Efd and Ifd; for speed, the
-/// resolution of shaft pickups.
+/// Assumed noise of channels that are not recorded: 0.1 % of rated Efd and Ifd, and the resolution of shaft
+/// pickups for speed [pu].
 constexpr double kFieldNoise = 1e-3, kSpeedNoise = 2e-5;
 /// Maximum number of competing hypotheses.
 constexpr std::size_t kCompetitors = 6;
 constexpr double kFrequencyDip = 0.2;        ///< frequency drop after a remote load step [Hz]
 constexpr double kFrequencyDipWithin = 1.0;  ///< duration of the frequency drop [s]
 constexpr double kReferenceStep = 0.02;      ///< step of Vref [pu]
-constexpr double kSceneBegins = 1.0;  ///< time of load step and Vref step after the start of the record [s]
+constexpr double kSceneBegins = 1.0;  ///< time from the start of the record to the load or Vref step [s]
 /// Nodes and weights of Gauss-Hermite quadrature over the noise of a further record, a standard normal
 /// variable.
 constexpr std::array<std::pair<double, double>, 3> kNodes = {
@@ -47,7 +47,7 @@ struct ScaledResponse {
   std::array<Eigen::MatrixXd, playin::kOutputs> sensitivities;
 };
 
-/// Returns an event without a disturbance in the network, except a frequency drop of `dip` [Hz].
+/// Returns an event in which the network is undisturbed except for a frequency drop of `dip` [Hz].
 event::FitEvent quiet(const event::FitEvent& like, double dip) {
   event::FitEvent e = like;
   e.switchings.clear();
@@ -100,8 +100,8 @@ class Separations {
 
   [[nodiscard]] const std::vector<Scene>& scenes() const { return scenes_; }
   [[nodiscard]] const std::vector<Output>& channels() const { return events_.front().channels; }
-  /// Returns chi2 of hypothesis j, after a refit, against the response of hypothesis i as the record. Empty
-  /// if one cannot be simulated.
+  /// Returns chi2 of hypothesis j after its refit to the response of hypothesis i as the record. Empty if one
+  /// of the two cannot be simulated.
   [[nodiscard]] std::optional<double> between(std::size_t scene, const std::vector<Output>& outputs,
                                               std::size_t i, std::size_t j) const {
     const auto &truth = response(scene, i), &other = response(scene, j);
@@ -231,7 +231,7 @@ Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vect
     const auto size = expected_size(between, scene, outputs, set);
     if (!size) return;
     const Scene& s = between.scenes()[scene];
-    // Of the events like recorded ones, only the best is kept.
+    // Of the events that repeat a recorded one, only the best is kept.
     const auto like = std::ranges::find_if(d.next, [&](const NextRecord& n) {
       return s.recorded >= 0 && n.what.starts_with(channel + " in an event");
     });

@@ -22,11 +22,12 @@ struct Decision {
 
 /// Returns the measurements that may separate the hypotheses of the credible set. The possible records are
 /// events like the recorded ones (only the best is returned), a remote load step, and a step of the voltage
-/// reference. Their channels are the recorded ones, alone or with speed, field voltage or field current.
+/// reference. Their channels are the recorded channels, alone or with speed, field voltage or field current.
 ///
-/// The response of one hypothesis serves as the record. Each other hypothesis is refitted to it, linearised
-/// about its fit, with the information of the present records on its parameters. The remaining chi2 reduces
-/// its evidence. Returns no measurement for component records and staged tests.
+/// To compare two hypotheses, the response of one serves as the record. The other hypothesis is refitted to
+/// this record, linearised about its fit. The refit includes the information of the present records on its
+/// parameters. The remaining chi2 reduces its evidence. Returns no measurement for component records and
+/// staged tests.
 Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vector<Explanation>& all,
                            const noise::WhitenedEvents& events, double prior_sd, int threads);
 

@@ -22,7 +22,7 @@ using sim::Slot;
 constexpr std::uint64_t kGroupDraws = 32;  ///< number of draws of the parameters of a freed group
 /// Prior standard deviation of ln(value) of parameters at their null values.
 constexpr double kGroupPriorSd = 2.0;
-/// Prior standard deviation of ln(value) of an added effect's parameters: a factor e.
+/// Prior standard deviation of ln(value) of an added effect's parameters; a change by it is a factor of e.
 constexpr double kAddedPriorSd = 1.0;
 /// Prior standard deviation of factors near 1, such as a transformer's tap ratio.
 constexpr double kFactorPriorSd = 0.1;
@@ -62,8 +62,8 @@ bool occupied(const sim::plant::Plant& plant, const sim::Effect& effect) {
   return false;
 }
 
-/// Returns whether a control reads the outputs of an effect that is added to `plant`: a stabiliser has no
-/// influence without an exciter.
+/// Returns whether a control of `plant` reads the output of an added effect. A stabiliser, for example, has
+/// no influence without an exciter.
 bool is_read(const sim::plant::Plant& plant, const sim::Effect& effect) {
   const auto reader = sim::reader_of(effect.slot);
   return !reader || std::ranges::any_of(plant.controls, [&](const sim::plant::Block& b) {
@@ -128,7 +128,7 @@ void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::E
   for (const sim::Effect* effect : library.all()) {
     const bool instrument = effect->slot == Slot::measurement;
     const bool fits = effect->slot == Slot::transformer || sim::is_control(effect->slot) || instrument;
-    const bool tried = !sim::library::variant_of(*effect);  // a variant is covered by its main effect
+    const bool tried = !sim::library::variant_of(*effect);  // the main effect covers alternative models
     if (!fits || !tried || effect->switching_times || occupied(tested.plant, *effect)) continue;
     if (!playin::belongs_to(recorded.component, effect->slot) || !is_read(tested.plant, *effect)) continue;
     if (!sim::slot_conflict(*tested.plant.machine.effect, *effect).empty()) continue;
@@ -139,18 +139,18 @@ void add_effects(const sim::plant::PlantUnderTest& tested, const sim::library::E
   }
 }
 
-/// Returns the name without its number ("S10" -> "S"): parameters that differ only in a number describe one
-/// curve.
+/// Returns the name without its trailing number ("S10" -> "S"). Parameters that differ only in this number
+/// describe one curve.
 std::string_view stem(std::string_view name) {
   while (!name.empty() && std::isdigit(static_cast<unsigned char>(name.back()))) name.remove_suffix(1);
   return name;
 }
 
-/// Start values of a group, relative to the range of its parameters.
+/// Start values of a parameter group (a curve), relative to the range of its parameters.
 constexpr std::array kCurveStarts = {0.02, 0.1, 0.3, -0.02, -0.1};
 /// Start values of a dead band's edges, relative to their range of 1 pu. A dead band is a few hundredths of 1
-/// pu for voltage, and a thousandth for frequency. If it is wider than the signal, the gradient of the cost
-/// is zero.
+/// pu for voltage, and a thousandth of 1 pu for frequency. If the start value is wider than the signal, the
+/// gradient of the cost is zero.
 constexpr std::array kBandStarts = {3e-4, 1e-3, 4e-3, 0.015, 0.05};
 
 /// Returns whether a group consists of the two edges of a dead band about a null value of 0.
@@ -220,7 +220,7 @@ std::vector<Hypothesis> null_groups(const sim::plant::PlantUnderTest& tested, in
   return all;
 }
 
-/// Adds a hypothesis for each switch of a converter's controls in its other position.
+/// Adds a hypothesis for each switch of a converter's controls: the switch in its other position.
 void add_switches(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
   if (!tested.plant.machine.effect->converter) return;
   for (int b = 0; b < sim::plant::first_measurement(tested.plant); ++b) {
@@ -256,7 +256,7 @@ void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypot
 }
 
 /// Returns whether a parameter may be 0 in `without` but not in `with`, such as the time constant of a rate
-/// feedback. It then acts only while the group differs from its null values.
+/// feedback. Such a parameter acts only while the group differs from its null values.
 bool acts_only_beside(const sim::plant::Plant& without, const sim::plant::Plant& with,
                       sim::plant::ParameterId id) {
   const auto may_be_zero = [&](const sim::plant::Plant& plant) {

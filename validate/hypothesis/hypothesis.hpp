@@ -1,8 +1,8 @@
 #pragma once
 // Hypotheses on missing effects: every effect of a library in a free slot, every group of parameters at their
-// null values, every measurement fault, every convention. In addition, a control in a slot for one effect may
-// be replaced by every other effect of this slot. The code lists no effect by name, so a new effect is
-// included automatically.
+// null values, every measurement fault, every convention. In addition, a control in a slot that holds one
+// effect may be replaced by every other effect of this slot. The code lists no effect by name, so a new
+// effect is included automatically.
 #include <string>
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace swingbank::validate::hypothesis {
 
 /// Side of a plant on which an effect acts.
 enum class Side { none, mechanical, excitation, machine, measurement };
-/// Returns the name of a side in reports, "excitation".
+/// Returns the name of a side in reports, for example "excitation".
 std::string_view side_name(Side side);
 
 /// A possible change of the model: an added or replaced effect, freed parameters, or a convention.
@@ -54,10 +54,11 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
 /// Returns extensions of `h` that also free a group of the added effect's parameters. The group is at null
 /// values by default, such as a rate feedback KF = 0. There is one extension for each group ("EXST1 with KF")
 /// and, if the group may have either sign, one for each sign. A parameter that acts only with the group (TF)
-/// has the same wide prior as the group. `fitted` is the plant of a fit of `h`: further start values are its
-/// values with random draws of the freed parameters. Empty if `h` adds no effect with such a group.
+/// has the same wide prior as the group. `fitted` is the plant of a fit of `h`. Further start values are
+/// those of this fit, with random draws for the freed parameters. Empty if `h` adds no effect with such a
+/// group.
 std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Plant& fitted);
-/// Returns the name with that of the effect added before: "SEXS + GENROU:Ra".
+/// Returns the name of the hypothesis with that of the effect added before: "SEXS + GENROU:Ra".
 std::string full_name(const Hypothesis& h);
 /// Returns the hypothesis's plant with `start` as values of its free parameters.
 sim::plant::Plant started(const Hypothesis& h, const std::vector<double>& start);

@@ -17,11 +17,11 @@ using event::InputKind;
 
 /// Number of best hypotheses that are fitted with the whole plant to find the leader.
 constexpr std::size_t kLeading = 3;
-/// Maximum number of linearisations about a leader: a second one if the leader changes.
+/// Maximum number of linearisations about a leader. The second one is needed if the leader changes.
 constexpr int kLinearPoints = 2;
 /// Maximum number of optima that are kept of one hypothesis.
 constexpr std::size_t kOptima = 2;
-/// Minimum evidence of an input that is free in time for a search on its side: strong on the scale of Kass
+/// Minimum evidence of an inferred input, free in time, for a search on its side: strong on the scale of Kass
 /// and Raftery (1995).
 constexpr double kStrongEvidence = 6.0;
 
@@ -57,12 +57,12 @@ class Identifying {
   }
 
  private:
-  /// Reduced plant of one side for the identification of its blocks; null: no effect can be missing on this
+  /// Reduced plant on which the blocks of one side are identified; null: no effect can be missing on this
   /// side.
   using Reduced = Polish::Reduced;
 
-  /// Prepares the reduced plants. If the base model nearly fits, it is linearised about its fit. A side is
-  /// then skipped if its free input explains no more than noise. Otherwise the inputs are inferred.
+  /// Prepares the reduced plants. If the base model nearly fits, it is linearised about its fit, and a side
+  /// whose free input explains no more than noise is skipped. Otherwise the inputs are inferred.
   void begin() {
     if (base_model_.fit.reduced_chi2() >= thresholds::noise.measurable) return infer();
     std::vector<event::EventState> states;
@@ -105,8 +105,8 @@ class Identifying {
         [&](int done) { report_progress(event::Phase::missing_input, "", done, kInputs.size()); },
         base_model_.threads);
     if (found[2]->criterion < std::min(found[0]->criterion, found[1]->criterion)) return reduce(*found[2]);
-    // The better input is used. The other one is used too if its reduction of chi2 is similar: less by at
-    // most evidence.within_reach, or more than the share search.fair.
+    // The better input is used. The other input is used too if its reduction of chi2 is at most
+    // evidence.within_reach lower, or is more than search.fair times that of the better input.
     const auto takes_off = [&](std::size_t i) { return fit::penalised(base_model_.fit) - found[i]->chi2; };
     for (const std::size_t i : {0, 1})
       if (found[i]->criterion < found[1 - i]->criterion ||
@@ -211,8 +211,8 @@ class Identifying {
     } catch (const InputError&) {  // integration with sensitivities takes other steps and may fail
     }
   }
-  /// Fits the hypotheses that may come within reach of the best. A linearisation about another block predicts
-  /// the cost of a block with many parameters poorly, so all blocks that nearly fit are fitted too.
+  /// Fits the hypotheses that may come within reach of the best. All blocks that nearly fit are fitted too,
+  /// because a linearisation about another block predicts the cost of a block with many parameters poorly.
   void fit_in_reach() {
     const Identified* leader = least();
     if (!leader) return;
@@ -224,9 +224,9 @@ class Identifying {
     }
     fit(some);
   }
-  /// Fits the hypotheses whose fits are not complete. The goal of a block depends on `others_` only if the
-  /// block's identified cost is higher than `others_`. Otherwise a fit that converges slowly at first might
-  /// end too early.
+  /// Fits the hypotheses whose fits are not complete. The goal of a block's fit depends on `others_` only if
+  /// the block's identified cost is higher than `others_`. A tighter goal might end a fit too early if it
+  /// converges slowly at first.
   void fit(std::vector<Identified*> some) {
     std::erase_if(some, [](const Identified* h) { return h->polished; });
     const double least = least_fitted();
@@ -243,7 +243,7 @@ class Identifying {
   }
   [[nodiscard]] std::vector<Judgement> judgements() {
     std::vector<Judgement> all;
-    const Identified* leader = nullptr;  // of those that were fitted
+    const Identified* leader = nullptr;  // best of the fitted hypotheses
     for (const Identified& h : tried_)
       if (h.best() && (!leader || h.cost < leader->cost)) leader = &h;
     for (const Identified& h : tried_) {
@@ -306,8 +306,8 @@ class Identifying {
   std::vector<Identified> tried_;
   Reduced torque_, field_;
   double none_;  ///< cost of the base model
-  /// Lowest cost of the fits in the choice of the leader and of the hypotheses that cannot be identified
-  /// alone.
+  /// Lowest cost among the fits made to find the leader and those of hypotheses that cannot be identified
+  /// without the rest of the plant.
   double others_ = std::numeric_limits<double>::infinity();
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 // Search among hypotheses that act through torque or field voltage. They are identified against the inferred
-// input (validate/reduced), then fitted with the whole plant.
+// input (validate/reduced), without the rest of the plant, then fitted with the whole plant.
 #include <functional>
 #include <vector>
 
@@ -8,19 +8,19 @@
 
 namespace swingbank::validate::hypothesis {
 
-/// Returns whether a hypothesis on this base model can be identified alone. Its effect must act only through
-/// torque or field voltage, and the plant must be a whole synchronous machine. No record may contain a
-/// breaker operation, an open circuit or a staged test.
+/// Returns whether a hypothesis on this base model can be identified without the rest of the plant. Its
+/// effect must act only through torque or field voltage, and the plant must be a whole synchronous machine.
+/// No record may contain a breaker operation, an open circuit or a staged test.
 bool can_be_identified(const BaseModel& base_model, const Hypothesis& h);
 
-/// Sets the gain of hypotheses that were identified but not fitted: the best gain minus Judgement::behind.
+/// Sets the gain of hypotheses that were identified but not fitted: the best gain minus `behind`.
 void place_unfitted(std::vector<Judgement>& all);
 
 /// Returns every hypothesis in descending order of evidence, without those that have no influence on the
 /// response. Hypotheses that may come within reach of the best one are fitted. `fit_others` fits the
-/// hypotheses that cannot be identified alone. It is called once, with the lowest cost of a whole-plant fit
-/// so far, and returns the lowest cost including its own fits. Hypotheses far above this cost are not fitted
-/// here.
+/// hypotheses that cannot be identified without the rest of the plant. It is called once, with the lowest
+/// cost of a whole-plant fit so far, and returns the lowest cost including its own fits. Hypotheses whose
+/// cost is far above the returned cost are not fitted here.
 std::vector<Judgement> identified(const BaseModel& base_model, std::vector<Hypothesis> all,
                                   const std::function<double(double least)>& fit_others,
                                   const event::Progress& report);

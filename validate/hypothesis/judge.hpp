@@ -26,16 +26,16 @@ struct HeldOut {
 struct Judgement {
   Hypothesis hypothesis;  ///< judged hypothesis
   fit::Fit fit;           ///< fit to all events
-  double gain = 0;        ///< 2 ln(Bayes factor): criterion of the base model minus that with the hypothesis
+  double gain = 0;        ///< 2 ln(Bayes factor): fit::criterion of the base model minus that of `fit`
   double size = 0;        ///< square root of the hypothesis's reduction of chi2 [noise standard deviations]
   std::vector<HeldOut> held_out;  ///< empty: not judged
   bool fitted = true;             ///< false: not promising, so `fit` is that of the base model
-  /// Excess of chi2 over the best hypothesis, for one that was identified but not fitted.
+  /// For a hypothesis that was identified but not fitted: its chi2 minus that of the best hypothesis.
   double behind = 0;
   /// For an identified control: the effect of the machine or of an instrument with which its chi2 is lowest.
-  /// Empty: no reduction of chi2 from the best single control is large enough.
+  /// Empty: no effect reduces chi2 enough below that of the best single control.
   std::string companion = {};
-  double companion_gain = 0;  ///< reduction of chi2 with the companion, from the best single control
+  double companion_gain = 0;  ///< chi2 of the best single control minus that with the companion
   bool accepted = false;      ///< whether all criteria of acceptance are met
   std::string why_not;        ///< reason for rejection; empty if accepted
 };
@@ -49,7 +49,8 @@ struct Trial {
   double prior_sd;                      ///< prior standard deviation of the model's parameters
   double adequate;                      ///< reduced chi-square up to which the residual counts as noise
   double evidence = thresholds::evidence.accepted;  ///< minimum evidence of an accepted hypothesis
-  /// Noise transfer of the base model: a lower noise transfer is no evidence. Null: it is ignored.
+  /// Noise transfer of the base model: a reduction of chi2 by a lower noise transfer is no evidence. Null:
+  /// not considered.
   const noise::NoiseTransfer* noise_transfer = nullptr;
 };
 
@@ -60,7 +61,7 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTe
 /// Returns the reason why a held-out event contradicts an effect of this evidence; empty if none does.
 /// `adequate` is Trial::adequate.
 std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate);
-/// Completes the fit of `j` and accepts it if three conditions are met. Its evidence is at least
+/// Completes the fit of `j` and accepts the hypothesis if three conditions are met: its evidence is at least
 /// Trial::evidence, no held-out event contradicts it (objection()), and the residual counts as noise.
 /// Otherwise sets `why_not`. Has no effect on a hypothesis that was not fitted.
 void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j);

@@ -1,4 +1,4 @@
-// Pairs of effects: a second effect with the first, replacement of the first, and exchange of partners
+// Pairs of effects: addition of a second effect, replacement of the first effect, and exchange of effects
 // between pairs.
 #include <algorithm>
 #include <array>
@@ -29,7 +29,7 @@ Judgement staying(const Hypothesis& h, const fit::Fit& in) {
   return stays;
 }
 /// Returns `h` on the base model `then`, not fitted. The start values of the effects added before are those
-/// of `then`; all others are those of `from`.
+/// of `then`; all other start values are those of `from`.
 Judgement begun(const BaseModel& then, Hypothesis h, const fit::Fit& from) {
   Judgement j;
   j.fit.failed = "not fitted";

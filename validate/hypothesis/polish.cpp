@@ -10,11 +10,11 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-/// Maximum number of steps of a fit of the whole plant: in the choice of the leader, and in the final fit.
+/// Maximum number of steps of a fit of the whole plant, to find the leader (kLeaderSteps) and at the end.
 constexpr int kLeaderSteps = 8, kPolishSteps = 40;
-/// Maximum number of linearisations about an optimum, and of the block's steps for each.
+/// Maximum number of linearisations about an optimum, and of the steps of each identification that follows.
 constexpr int kLinearRounds = 3, kLinearSteps = 8;
-/// Predicted reduction of chi2 below which the linearisations end.
+/// Predicted reduction of chi2 below which no further linearisation is made.
 constexpr double kSettledCost = 1.0;
 
 }  // namespace

@@ -11,12 +11,12 @@
 
 namespace swingbank::validate::hypothesis {
 
-/// A hypothesis whose block was identified alone.
+/// A control hypothesis whose block (the added effect) was identified without the rest of the plant.
 struct Identified {
   Hypothesis hypothesis;                      ///< hypothesis that adds the block
   reduced::Trial trial;                       ///< its block and free parameters
   std::vector<reduced::Optimum> optima = {};  ///< best first
-  /// Cost of the best optimum; after a fit of the whole plant, that of the fit.
+  /// Cost of the best optimum; after a fit of the whole plant, the cost of that fit.
   double cost = std::numeric_limits<double>::infinity();
   std::vector<fit::Fit> fits = {};  ///< fits of the whole plant
   bool polished = false;            ///< whether the fits are complete
@@ -48,17 +48,17 @@ class Polish {
   /// plant cannot be simulated.
   [[nodiscard]] Reduced linear_about(const Identified& h,
                                      std::span<const reduced::Change> changes = {}) const;
-  /// Fits the whole plant for a few steps from the best optimum. The linearisation point of `from` may be far
-  /// from it.
+  /// Fits the whole plant for a few steps from the best optimum. This optimum may be far from the
+  /// linearisation point of `from`.
   void briefly(Identified& h, const reduced::Reduction& from) const;
   /// Fits the whole plant from each optimum. Before the fit, the plant is linearised about the optimum and
   /// the block is identified again, at most three times. These steps follow narrow valleys of the cost in
-  /// which a fit is slow, such as that of gain and T'do. There is no fit if such a linearisation predicts a
-  /// cost above `goal`.
+  /// which a fit is slow, such as that of gain and T'do. An optimum is not fitted if such a linearisation
+  /// predicts a cost above `goal`.
   void polish(Identified& h, const reduced::Reduction& from, double goal) const;
 
  private:
-  /// Values of the whole plant and of each event's state, on their axes.
+  /// Parameter values of the whole plant and state of each event, in the coordinates of the fit.
   struct Point {
     Eigen::VectorXd plant, own;  ///< parameters of the base model and of the hypothesis
     std::vector<Eigen::VectorXd> states;
@@ -66,11 +66,11 @@ class Polish {
   [[nodiscard]] static Eigen::VectorXd own_of(const Identified& h, const std::vector<double>& values);
   [[nodiscard]] Point expected(const Identified& h, const reduced::Reduction& reduction,
                                const reduced::Optimum& found) const;
-  /// Returns the linearisation point, with the identified block.
+  /// Returns the linearisation point, with the block at the values of the optimum `found`.
   [[nodiscard]] static Point reference(const Identified& h, const reduced::Reduction& reduction,
                                        const reduced::Optimum& found);
-  /// Calls `act` at `to`. While it returns false or the plant cannot be simulated, `to` is moved halfway back
-  /// to `from`. Returns whether `act` succeeded at any point.
+  /// Calls `act` at `to`. While `act` returns false or the plant cannot be simulated, `to` is moved halfway
+  /// back to `from`, at most five times. Returns whether `act` succeeded at any point.
   template <class F>
   static bool between(const Point& from, Point& to, F act);
   [[nodiscard]] sim::plant::Plant whole(const Identified& h, const Point& point) const;

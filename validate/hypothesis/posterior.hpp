@@ -20,20 +20,19 @@ struct Explanation {
 
 /// Computes the probabilities and returns the explanations, most probable first. `none`: evidence of an
 /// unlisted effect minus its threshold, from the inferred inputs (torque, field voltage) and from a steady
-/// oscillation. An unlisted effect may
-/// also resemble the best listed one, so its evidence is at least that of the best minus
-/// thresholds::evidence.accepted.
+/// oscillation. An unlisted effect may also resemble the best listed effect. Its evidence is therefore at
+/// least that of the best listed effect minus thresholds::evidence.accepted.
 std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
 
 /// Returns the size of the credible set: the number of leading explanations whose probabilities sum to
 /// thresholds::posterior.set or more.
 std::size_t credible(const std::vector<Explanation>& all);
 
-/// Returns the difference of evidence from a better explanation beyond which an explanation is negligible
+/// Returns the evidence by which an explanation must be worse than a better one to be negligible
 /// (thresholds::posterior.negligible) [chi2].
 double out_of_reach();
-/// Returns the difference of evidence from the best hypothesis up to which a hypothesis may be in the
-/// credible set [chi2].
+/// Returns the evidence by which a hypothesis may be worse than the best one and still be in the credible set
+/// [chi2].
 double out_of_set();
 
 }  // namespace swingbank::validate::hypothesis

@@ -20,9 +20,9 @@ namespace swingbank::validate::hypothesis {
 namespace {
 
 /// Maximum number of steps. kFirstSteps: of an identification, and of the fit from its optimum. kLastSteps:
-/// of the fit that continues the best of these.
+/// of the fit that continues the best of these fits.
 constexpr int kFirstSteps = 4, kLastSteps = 40;
-/// Effort of an identification in closed loop, whose trials cost far more than those in open loop.
+/// Effort of an identification in closed loop. A trial in closed loop costs far more than one in open loop.
 constexpr reduced::IdentifyOptions kClosedLoop{.draws = 4, .kept = 1, .steps = kFirstSteps};
 
 /// Values of all free parameters of a hypothesis, and the events' states.
@@ -42,9 +42,9 @@ struct Candidate {
 };
 
 /// Fits of hypotheses that cannot be identified in open loop. Each is identified in closed loop. The plant's
-/// other parameters enter linearly, about the base model's fit and, unless that nearly fits, also about the
-/// submitted values. The optima are fitted for a few steps if they promise half of the required evidence. The
-/// best of these fits is completed if it may come within reach of the best hypothesis.
+/// other parameters enter linearly, about the base model's fit and, unless its reduced chi-square is below 4,
+/// also about the submitted values. The optima are fitted for a few steps if they promise half of the
+/// required evidence. The best of these fits is completed if it may come within reach of the best hypothesis.
 class WholeFits {
  public:
   /// `least`: lowest cost of the hypotheses that are fitted already.
@@ -139,7 +139,7 @@ class WholeFits {
       }
     }
   }
-  /// Returns the judgement of a candidate that promises too little.
+  /// Returns the judgement of a candidate whose predicted reduction of chi2 is too small.
   [[nodiscard]] Judgement not_fitted(Candidate& c) const {
     Judgement j;
     j.hypothesis = std::move(c.hypothesis);
@@ -158,14 +158,15 @@ class WholeFits {
   static void keep(Candidate& c, fit::Fit f) {
     if (f.failed.empty()) c.fits.push_back(std::move(f));
   }
-  /// Returns the cost that a fit must be able to reach: within reach of the best, and with enough evidence.
+  /// Returns the cost that a fit must be able to reach: near that of the best fit, and low enough for half of
+  /// the required evidence.
   [[nodiscard]] double goal(const std::vector<Candidate>& candidates) const {
     double least = least_;
     for (const Candidate& c : candidates)
       for (const fit::Fit& f : c.fits) least = std::min(least, fit::penalised(f));
     return std::min(least + out_of_reach(), needed());
   }
-  /// Returns the cost with half of the required evidence.
+  /// Returns the cost at which a hypothesis has half of the required evidence.
   [[nodiscard]] double needed() const {
     const double evidence = first() ? thresholds::evidence.accepted : thresholds::evidence.second;
     return fit::penalised(base_model_.fit) - evidence / 2;

@@ -1,6 +1,6 @@
 #pragma once
-// Single trial of every hypothesis on one base model, in descending order of evidence. Afterwards judge()
-// tests the leading ones on unseen events.
+// Trial of each hypothesis alone on one base model. The results are in descending order of evidence.
+// Afterwards judge() tests the leading hypotheses on unseen events.
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -41,7 +41,7 @@ struct BaseModel {
   [[nodiscard]] record::Component component() const {
     return events.empty() ? record::Component::plant : events.front().record.component;
   }
-  /// Returns every hypothesis that these events can show (all_hypotheses).
+  /// Returns every hypothesis that these events can test (all_hypotheses()).
   [[nodiscard]] std::vector<Hypothesis> hypotheses() const;
 };
 
@@ -56,7 +56,7 @@ fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& t
 
 /// Returns the free parameters of a base model: those of the given model, and those of effects added before.
 std::vector<fit::FreeParameter> free_with_own(const BaseModel& base_model);
-/// Returns the stream of the random draws of a hypothesis of this name.
+/// Returns the number of the random stream for the draws of a hypothesis of this name.
 std::uint64_t stream_of(const std::string& name);
 /// Returns the length of the first record [s].
 double length(const BaseModel& base_model);
@@ -67,32 +67,32 @@ std::string too_small(double gain);
 /// before at their prior means.
 sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h);
 
-/// Returns the fit of the hypothesis with standard errors, which its evidence needs; empty if they cannot be
-/// computed.
+/// Returns the fit of the hypothesis with the standard errors that its evidence requires. Empty if they
+/// cannot be computed.
 std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& f);
 
 /// Fits a hypothesis that the search has not fitted, from its start values.
 void fit_alone(const BaseModel& base_model, Judgement& j);
 
-/// Fits `h` from the end point of the fit of another structure. Parameters that the other one lacks start at
-/// their values in `start`, a plant of the structure of `h`.
+/// Fits `h` from the end point of `other`, the fit of another structure. Parameters that the other structure
+/// lacks start at their values in `start`, a plant of the structure of `h`.
 fit::Fit fit_from(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& other,
                   const sim::plant::Plant& start);
 
-/// Refits `j` from the end point of the fit of another structure, and keeps the better fit.
+/// Refits `j` from the end point of `other`, the fit of another structure, and keeps the better fit.
 void try_from(const BaseModel& base_model, const fit::Fit& other, Judgement& j);
 
-/// Returns the base model that consists of `base_model` and the hypothesis of `j`.
+/// Returns the base model to which the hypothesis of `j` has been added.
 BaseModel after(const BaseModel& base_model, const Judgement& j);
 
-/// Adds the parameters of effects added before to the free parameters of `h`, with their fitted values as
-/// start values.
+/// Adds the parameters of the effects added before to the free parameters of `h`. Their start values are
+/// their fitted values.
 void bring(const BaseModel& base_model, Hypothesis& h);
 
 /// Returns the candidates for replacing a pair's first effect while its second effect stays. These are all
-/// effects of the first one's slot, and the accepted hypotheses of `alone`. They are not fitted; `fit`
-/// contains only start values and states. Those of the second effect are from the pair's fit. All others are
-/// from the candidate's fit in `alone` or, without one, from the pair's fit.
+/// effects of the first effect's slot, and the accepted hypotheses of `alone`. They are not fitted; `fit`
+/// contains only start values and states. The start values of the second effect are from the pair's fit. All
+/// others are from the candidate's fit in `alone` or, without such a fit, from the pair's fit.
 std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& pair,
                                  const std::vector<Judgement>& alone);
 /// Fits a candidate of exchanges() or crossed() from its start. Does nothing if the candidate has no start.
@@ -103,12 +103,12 @@ struct Cross {
   const Judgement* joins_in;  ///< the better pair, whose machine parameters are used
   std::string stays;          ///< name of the effect taken from the other pair
   const Judgement* stays_in;  ///< the other pair
-  /// Evidence of both pairs minus that of the pair of their partners; reductions of chi2 are assumed to add
-  /// up.
+  /// Evidence of both pairs minus that of the pair of their other effects. This assumes that reductions of
+  /// chi2 add up.
   double expected;
 };
-/// Returns the cross with the highest expected evidence. Its two effects have not been tried as a pair, but
-/// their partners have. Empty if there is none.
+/// Returns the cross with the highest expected evidence; empty if there is none. The two effects of a cross
+/// have not been tried as a pair, but their partners have.
 std::optional<Cross> best_cross(std::span<const Judgement> pairs);
 /// Returns the pair of a cross, not fitted. If one of its effects cannot be added without another, only the
 /// names are set.
