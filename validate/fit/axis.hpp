@@ -9,14 +9,14 @@
 
 namespace swingbank::validate::fit {
 
-/// A free parameter in the coordinate of the search: z = 0 at the start, steps of order 1.
+/// A free parameter in the search's coordinate z: z = 0 at the start, and steps are of order 1.
 struct Axis {
   FreeParameter where;      ///< the parameter, with its prior
   double start, low, high;  ///< start value and bounds [unit of the parameter]
   bool logarithmic;         ///< whether the search moves the parameter's logarithm
   double unit;              ///< parameter units per unit of z; linear axis only
-  /// Returns the parameter's value, rounded to 40 binary digits. Parameters at the same bound are then equal
-  /// whatever their start values.
+  /// Returns the parameter's value, rounded to 40 binary digits. Parameters at the same bound therefore have
+  /// equal values, whatever their start values.
   [[nodiscard]] double value(double z) const {
     const double v = logarithmic ? start * std::exp(z) : start + unit * z;
     if (v == 0 || !std::isfinite(v)) return v;

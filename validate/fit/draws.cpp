@@ -13,15 +13,17 @@ namespace {
 
 /// Maximum number of tries per draw.
 constexpr std::uint64_t kRedraws = 20;
-/// Standard deviation of ln(value) in prior standard deviations. kIndependentWidth: even draws. kGainWidth:
-/// gains in odd draws, which are uncertain by decades. kOrderedWidth: all other parameters in odd draws.
+/// Standard deviation of ln(value), in prior standard deviations. kIndependentWidth: for even draws.
+/// kGainWidth: for gains in odd draws, which are uncertain by decades. kOrderedWidth: for other parameters in
+/// odd draws.
 constexpr double kIndependentWidth = 1.2, kGainWidth = 2.0, kOrderedWidth = 0.8;
-/// Share of reduced values, and their largest reduction [decades]; the reduction factor is log-uniform.
+/// Share of values that are reduced, and their largest reduction [decades]. The reduction factor is
+/// log-uniform.
 constexpr double kShareOfReduced = 0.25, kDecadesBelow = 2;
 /// Lower limit of the longest time constant, relative to the length of the records.
 constexpr double kShortestDraw = 3e-3;
 
-/// Random streams of one parameter. `whole` belongs to the whole draw and uses the number of the first
+/// Random streams of one parameter. The stream `whole` serves the whole draw and uses the number of the first
 /// parameter.
 enum Stream : std::uint32_t { own, common, reduced, whole, streams };
 
@@ -61,7 +63,7 @@ std::vector<double> Draws::once(std::uint64_t number, std::uint64_t attempt) con
   return values;
 }
 
-/// Returns the factor on the plant's value in an even draw.
+/// Returns the factor by which an even draw multiplies the plant's value.
 double Draws::independent(std::size_t i, std::uint64_t sample) const {
   const auto [which, where] = sim::uniform_pair(stream_, stream(i, reduced), sample);
   if (which < kShareOfReduced) return std::pow(10.0, -kDecadesBelow * where);
@@ -70,7 +72,7 @@ double Draws::independent(std::size_t i, std::uint64_t sample) const {
   return may_change_sign(parameter_record(plant_, free_[i].id)) ? 1 + moved : std::exp(moved);
 }
 
-/// Returns the factor on the plant's value in an odd draw.
+/// Returns the factor by which an odd draw multiplies the plant's value.
 double Draws::ordered(std::size_t i, std::uint64_t sample) const {
   const sim::Parameter& p = parameter_record(plant_, free_[i].id);
   const double width = (p.low > 0 && p.high / p.low >= 1000 ? kGainWidth : kOrderedWidth) * free_[i].prior_sd;

@@ -8,13 +8,13 @@
 
 namespace swingbank::validate::fit {
 
-/// Sampler of parameter sets. A draw depends only on the random stream and on the number of the draw.
+/// Sampler of parameter sets. A draw (one parameter set) depends only on the random stream and on its number.
 ///
-/// In draws with an even number, the values are independent. A quarter of them are reduced by up to two
+/// In draws with an even number, the values are independent. A quarter of the values are reduced by up to two
 /// decades, because an upper limit acts only if the signal reaches it. In draws with an odd number, half of
 /// the variance is common to all parameters with the same unit. The points of a curve and the time constants
 /// of a block then keep their order. The longest time constant is log-uniform up to the length of the
-/// records, because a longer one has no effect in them.
+/// records. A longer time constant has no effect in the records.
 class Draws {
  public:
   /// `length`: length of the records [s]; 0: unknown.
@@ -34,7 +34,7 @@ class Draws {
   std::uint64_t stream_;
   double length_;
   double longest_ = 0;               ///< longest time constant of the plant's values [s]
-  std::vector<std::uint32_t> unit_;  ///< for each parameter: index of the first one with the same unit
+  std::vector<std::uint32_t> unit_;  ///< for each parameter: first parameter with the same unit
 };
 
 }  // namespace swingbank::validate::fit

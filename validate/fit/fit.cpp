@@ -20,8 +20,8 @@ namespace {
 
 using namespace fitting;
 
-/// A search of at most kFewSteps steps may try kRefusedSteps more, so that refused steps do not use up its
-/// iterations. Refused steps are cheap, because they need no sensitivities.
+/// A search of at most kFewSteps steps may make kRefusedSteps further iterations, so that refused steps do
+/// not use up the iterations. Refused steps are cheap, because they need no sensitivities.
 constexpr int kFewSteps = 4, kRefusedSteps = 3;
 
 /// Counts the successful steps. Stops the search after enough of them, on interruption, or if the goal is out
@@ -57,7 +57,7 @@ class Steps : public ceres::IterationCallback {
 
   int enough_, taken_ = 0;
   Goal goal_;
-  std::vector<double> costs_;  ///< at the start and after each successful step
+  std::vector<double> costs_;  ///< cost at the start and after each successful step
   bool out_of_reach_ = false;
 };
 
@@ -190,7 +190,7 @@ class Search {
     problem_->AddResidualBlock(cost, nullptr, blocks);
     problem_->AddResidualBlock(new GaussianPrior(state_priors(event), &discrepancy_), nullptr,
                                {states_[e].data()});
-    // A switching time must not reach a sample, because the sample would then lie on its other side.
+    // A switching time must not reach a sample: the sample would then lie on the other side of the switching.
     const double edge = 1e-3 * event.record.step();
     std::vector<int> fixed;
     for (std::size_t k = 0; k < event.switchings.size(); ++k) {
@@ -232,8 +232,8 @@ class Search {
     return "its parameters violate a constraint";
   }
 
-  /// Returns the response at the end of the search. It is lenient if the fit is lenient and brief, or if the
-  /// exact integration fails.
+  /// Returns the response at the end of the search. The integration is lenient (FitOptions::lenient) if the
+  /// fit is lenient and brief, or if the exact integration fails.
   playin::Response final_response(std::size_t e, const sim::plant::Plant& plant, const EventState& at) const {
     if (!setting_.lenient || options_.brief) return costs_[e]->response(plant, at, setting_.lenient);
     try {
@@ -321,7 +321,7 @@ class Search {
   const Setting& setting_;
   const FitOptions& options_;
   double discrepancy_ = 1.0;
-  bool out_of_reach_ = false;                                 ///< the goal cannot be reached
+  bool out_of_reach_ = false;                                 ///< whether the goal cannot be reached
   double reached_ = std::numeric_limits<double>::infinity();  ///< cost at the end of the last search
   std::vector<double> z_;
   std::vector<std::vector<double>> states_;

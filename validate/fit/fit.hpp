@@ -18,8 +18,8 @@ using event::EventState, event::InputKind;
 using noise::EventFit;
 
 /// A parameter that a fit may change. `prior_sd` is its prior standard deviation relative to its value; 0: no
-/// prior. If the value is 0, it is relative to 5 % of the parameter's range, at most 1. The fit moves the
-/// logarithm if moves_by_logarithm(), otherwise the value.
+/// prior. If the value is 0, `prior_sd` is relative to 5 % of the parameter's range, at most 1. The fit moves
+/// the logarithm if moves_by_logarithm(), otherwise the value.
 struct FreeParameter {
   sim::plant::ParameterId id;  ///< parameter of the plant
   double prior_sd = 0.3;       ///< relative, see above
@@ -28,7 +28,7 @@ struct FreeParameter {
 /// Returns the parameters of a block that a fit may change. Excludes codes, parameters at zero or at their
 /// null value, and parameters that set a switching time of the effect.
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double prior_sd);
-/// The same for all blocks except the instruments.
+/// Returns these parameters of all blocks except the instruments.
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double prior_sd);
 
 /// Returns the present values of the free parameters.
@@ -40,15 +40,15 @@ struct FittedParameter {
   std::string block, name, unit;  ///< names of block and parameter; unit
   double start = 0, value = 0;    ///< value before and after the fit [unit]
   double error = 0;               ///< standard error from the curvature [unit]; NaN if the fit is singular
-  double low = 0, high = 0;       ///< 95 % interval [unit], within the physical bounds
-  /// Whether the value is at the end of its range or at an ordering constraint (X''d > Xl). The interval is
-  /// then not valid.
+  double low = 0, high = 0;       ///< bounds of the 95 % interval [unit], within physical limits
+  /// Whether the value is at the end of its range or at an ordering constraint (X''d > Xl). The 95 % interval
+  /// is then not valid.
   bool at_bound = false;
   std::string active_constraint = {};  ///< the ordering constraint, for example "X''d > Xl"; empty: none
   /// Returns "block.parameter".
   [[nodiscard]] std::string full_name() const { return sim::plant::ParameterName{block, name}.text(); }
-  /// One minus the ratio of posterior to prior variance, 0 to 1. 0: the prior alone determines the value. 1:
-  /// the records alone determine it, or it has no prior.
+  /// One minus the ratio of posterior to prior variance, 0 to 1. At 0, the prior alone determines the value.
+  /// At 1, the records alone determine the value, or it has no prior.
   double decided = 0;
 };
 
@@ -58,18 +58,18 @@ struct Fit {
   std::vector<FittedParameter> parameters;  ///< free parameters, in the order of the request
   std::vector<EventFit> events;             ///< fits of the events, in their order
   noise::NoiseModel noise;                  ///< noise model in which chi2 is computed
-  double chi2 = 0, prior_cost = 0;          ///< chi2 of the data, and of the priors
+  double chi2 = 0, prior_cost = 0;          ///< chi2 of the data; chi2 of the priors
   int values = 0, fitted = 0;  ///< number of compared values; number of free variables, event states included
   /// Log determinant of the posterior precision in units of the priors' precision (Occam factor). A parameter
   /// that the records do not determine contributes 0. NaN if the fit computed no standard errors.
   double occam = 0;
   /// Reduction of chi2 that results only from a lower transfer of the voltage noise than in the reference
-  /// structure. It is no evidence, so data_cost() and criterion() add it back. 0 before
-  /// correct_noise_transfer().
+  /// structure. Such a reduction is no evidence, so data_cost() and criterion() add it back. The value is 0
+  /// before correct_noise_transfer().
   double transfer_deficit = 0;
   int iterations = 0;      ///< number of iterations
   bool converged = false;  ///< whether the search ended at a minimum
-  std::string failed;      ///< reason why the start could not be evaluated; empty: it could
+  std::string failed;      ///< reason why the start could not be evaluated; empty: it was evaluated
   /// Returns the reduced chi-square of all events [-].
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
@@ -92,9 +92,9 @@ double criterion(const Fit& f);
 /// Returns chi2 of the data alone, with Fit::transfer_deficit added back; infinite if the fit failed.
 double data_cost(const Fit& f);
 
-/// Sets Fit::transfer_deficit of the fit of another structure. It is at least 0, so a higher noise transfer
-/// earns no credit. Every competing explanation must be corrected, including the refit with an unknown input.
-/// Does nothing if `noise_transfer` is null or the fit failed.
+/// Sets Fit::transfer_deficit of `fit`, a fit of another structure. The deficit is at least 0, so a higher
+/// noise transfer earns no credit. Every competing explanation must be corrected, including the refit with an
+/// unknown input. Does nothing if `noise_transfer` is null or the fit failed.
 void correct_noise_transfer(const noise::NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
                             Fit& fit);
 
@@ -102,11 +102,11 @@ void correct_noise_transfer(const noise::NoiseTransfer* noise_transfer, const si
 /// uses this function. Throws std::logic_error if the fits have different noise models, because their costs
 /// then have different units. A failed fit has infinite cost in any unit.
 double gain(const Fit& from, const Fit& to, double (*cost)(const Fit&) = penalised);
-/// The same for chi2 of one event.
+/// Returns the reduction of chi2 of one event between two fits.
 double gain(const EventFit& from, const EventFit& to);
 /// Returns whether fit `a` has the lower penalised cost.
 bool better(const Fit& a, const Fit& b);
-constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< of the integration; see event::Playing
+constexpr double kFitTolerance = event::Playing{}.tolerance;  ///< tolerance of the integration
 
 /// Target of a fit: a penalised cost of at most `cost` within `steps` steps. The steps may include those of
 /// later fits that continue this one.
@@ -118,14 +118,14 @@ struct Goal {
 /// Effort, tolerances and start of a fit.
 struct FitOptions {
   int iterations = 60;               ///< maximum number of iterations
-  double tolerance = kFitTolerance;  ///< of the integration; see event::Playing
+  double tolerance = kFitTolerance;  ///< tolerance of the integration (event::Playing)
   /// The search allows larger integration errors in states that hardly affect the compared channels
   /// (event::Playing), and linearises the sensitivities. Secant updates (Broyden) correct the sensitivities
-  /// during the search. The final cost is computed without this allowance, the standard errors with it. A fit
-  /// that cannot be evaluated at the start is repeated with this option.
+  /// during the search. The final cost is computed without these larger errors, the standard errors with
+  /// them. A fit that cannot be evaluated at the start is repeated with this option.
   bool lenient = false;
   /// The fit is compared only with other brief fits. The final cost of a lenient fit is then computed with
-  /// the allowance.
+  /// the larger integration errors too.
   bool brief = false;
   bool steady_start = false;           ///< whether every event starts in its pre-event steady state
   double enough = 1e-5;                ///< relative change of the cost that ends the fit
@@ -137,7 +137,8 @@ struct FitOptions {
   Goal goal = {};
 };
 
-/// Returns options that continue from the end of `f`. The priors stay centred on the plant that is fitted.
+/// Returns options for a fit that continues from the end of `f`. The priors stay centred on the plant that is
+/// passed to fit().
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free);
 
 /// Fits the `free` parameters of the plant and every event's own state. If the start cannot be evaluated, the

@@ -26,7 +26,8 @@ std::vector<playin::SensitivityParameter> own_parameters(const event::FitEvent& 
   return along;
 }
 
-/// Returns the state in units of these sensitivity parameters, each with a prior standard deviation of 1.
+/// Returns the state in units of the sensitivity parameters of own_parameters(). Each has a prior standard
+/// deviation of 1.
 Eigen::VectorXd in_parameter_units(const event::FitEvent& event, const EventState& state) {
   std::vector<double> all;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
@@ -98,7 +99,7 @@ EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested,
 std::vector<std::vector<double>> response_deviation(const LinearisedEvent& at, const event::FitEvent& event,
                                                     const Eigen::MatrixXd& covariance) {
   const auto parameters = at.by_parameter.cols(), all = parameters + at.by_state.cols();
-  // Joint covariance: the state follows a change of the parameters by -absorbed.
+  // Joint covariance of parameters and state. A parameter change d changes the state by -absorbed d.
   Eigen::MatrixXd follow(all, parameters), joint(all, all);
   follow << Eigen::MatrixXd::Identity(parameters, parameters), -at.absorbed;
   joint = follow * covariance * follow.transpose();

@@ -8,16 +8,16 @@
 namespace swingbank::validate::fit {
 
 /// Returns the unit of a parameter's axis in `information` [unit of the parameter]: one prior standard
-/// deviation. Without a prior it is the magnitude of the value, or 5 % of the parameter's range (at most 1)
-/// if the value is 0.
+/// deviation. For a parameter without a prior, the unit is the magnitude of the value. If the value is 0, it
+/// is 5 % of the parameter's range, at most 1.
 double axis_unit(const sim::plant::Plant& plant, const FreeParameter& parameter);
 
-/// Response of one event with its sensitivities at a point of the fit, per axis_unit and per prior standard
-/// deviation of the event's own state.
+/// Response of one event with its sensitivities at a point of the fit. They are per axis_unit() of a
+/// parameter, and per prior standard deviation of a variable of the event's own state.
 struct LinearisedEvent {
-  playin::Response response;               ///< with its sensitivities to the parameters, then to the states
+  playin::Response response;               ///< response with sensitivities to parameters, then states
   Eigen::MatrixXd by_parameter, by_state;  ///< whitened: [compared value][parameter], [compared value][state]
-  Eigen::MatrixXd state_covariance;        ///< of the states at given parameters
+  Eigen::MatrixXd state_covariance;        ///< covariance of the states at given parameters
   Eigen::MatrixXd absorbed;  ///< [state][parameter]: part of a parameter's effect that the states absorb
   /// Returns the whitened sensitivities to the parameters with the states projected out.
   [[nodiscard]] Eigen::MatrixXd projected() const { return by_parameter - by_state * absorbed; }

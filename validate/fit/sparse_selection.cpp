@@ -19,7 +19,7 @@ using Set = std::vector<std::size_t>;  ///< indices of parameters, ascending
 
 constexpr std::size_t kBeam = 60;     ///< number of sets of each size in the beam
 constexpr std::size_t kRefitted = 3;  ///< number of sets of each size that are refitted
-/// Number of sets of the selected size that are refitted to find alternatives.
+/// Number of sets of the selected size that are refitted to find equivalent sets.
 constexpr std::size_t kTied = 6;
 
 constexpr double kExactly = 1e-6;  ///< relative prior standard deviation that represents a fixed value
@@ -65,8 +65,8 @@ class Selection {
       if (taken - penalised(all_) < options_.each) break;  // even all parameters would gain too little
       const auto& [refitted, best] = best_of(size);
       report(event::Phase::parameter_subsets, size, beams_.size() - 1);
-      // Two parameters may reduce the cost only together, so one size without enough gain does not end the
-      // search.
+      // The cost may fall only if two parameters change together. One size without enough gain therefore does
+      // not end the search.
       if (taken - refitted.cost > options_.each * static_cast<double>(size - set.size())) {
         taken = refitted.cost;
         chosen = refitted;
@@ -80,8 +80,8 @@ class Selection {
     while (exchange(set, chosen)) {
     }
     std::vector<double> rises = evidence(set, chosen.fit);
-    // A parameter may have been selected only because the others moved within the tolerance. It is dropped if
-    // its evidence is too low with the others at their given values.
+    // A parameter may have been selected only because the unselected ones could move within the tolerance. It
+    // is dropped if its evidence is too low with the unselected parameters at their given values.
     for (auto least = std::ranges::min_element(rises); least != rises.end() && *least < options_.each;
          least = std::ranges::min_element(rises)) {
       set = without(set, static_cast<std::size_t>(least - rises.begin()));
@@ -114,7 +114,8 @@ class Selection {
       throw InputError(
           {"the model cannot be fitted", "the model", f.failed, "correct the model, or exclude the record"});
   }
-  /// Computes the Hessian of the cost at the full fit, and the location of that fit, in units of the priors.
+  /// Computes the Hessian of the cost at the full fit (all parameters free), and the location of that fit, in
+  /// units of the priors.
   void learn_curvature() {
     const auto n = static_cast<Eigen::Index>(free_.size());
     curvature_ = Eigen::MatrixXd::Identity(n, n);  // of the priors
@@ -130,14 +131,14 @@ class Selection {
     }
   }
   /// Prediction of the quadratic model for a free set, with the other parameters within the tolerance of a
-  /// correct value. `excess`: cost above that of the full fit; `at`: location of the optimum; `occam`: log
+  /// correct value. `excess`: cost minus that of the full fit; `at`: location of the optimum; `occam`: log
   /// determinant of the posterior precision (Fit::occam).
   struct Prediction {
     double excess = 0, occam = 0;
     Eigen::VectorXd at = {};
   };
   [[nodiscard]] Prediction predict(const Set& set) const { return predict(set, options_.right); }
-  /// `right`: prior standard deviation of the other parameters, relative.
+  /// `right`: relative prior standard deviation of the parameters outside `set`.
   [[nodiscard]] Prediction predict(const Set& set, double right) const {
     const Eigen::VectorXd toward = curvature_ * at_;
     Eigen::MatrixXd precision = curvature_;
@@ -185,7 +186,8 @@ class Selection {
   [[nodiscard]] double worth(double cost, double occam, std::size_t size) const {
     return criterion(all_) - cost - occam - options_.each * static_cast<double>(size);
   }
-  /// Returns whether even the most promising size has too low a criterion after its best sets are refitted.
+  /// Returns whether the criterion stays too low even for the most promising size, after its best sets are
+  /// refitted.
   [[nodiscard]] bool hopeless() {
     if (options_.least == -std::numeric_limits<double>::infinity()) return false;
     double most = -std::numeric_limits<double>::infinity();
@@ -207,8 +209,8 @@ class Selection {
                ? believed * std::exp(z * free_[i].prior_sd)
                : believed + z * axis_unit(tested_.plant, free_[i]);
   }
-  /// A fit with only the parameters of a set free, and the estimated cost if the others move within the
-  /// tolerance.
+  /// A fit with only the parameters of a set free. `cost`: estimated cost if the other parameters may move
+  /// within the tolerance.
   struct Refit {
     Fit fit;
     double cost = std::numeric_limits<double>::infinity();
@@ -217,9 +219,10 @@ class Selection {
   /// given values.
   ///
   /// The fit's cost exceeds that of the full fit. This excess becomes smaller if the other parameters may
-  /// move, and Refit::cost applies the factor that the quadratic model predicts. For a limit the predicted
-  /// factor is too small, because a limit that is not reached has no further effect on the cost. The
-  /// estimated excess is therefore at least the predicted one, or the fit's own if that is lower.
+  /// move, and Refit::cost applies the reduction factor that the quadratic model predicts. For a limit the
+  /// predicted factor is too small, because a limit that is not reached has no further effect on the cost.
+  /// The estimated excess is therefore at least the predicted excess, or the fit's own excess if that is
+  /// lower.
   [[nodiscard]] Refit refit(const Set& set, bool errors = false) const {
     const Prediction fixed = predict(set, kExactly), soft = predict(set);
     FitOptions o = kSearch;
@@ -244,7 +247,7 @@ class Selection {
       r.cost = most + std::max(over * soft.excess / fixed.excess, std::min(over, soft.excess));
     return r;
   }
-  /// Returns the best set of this size, of those with the lowest predicted cost.
+  /// Returns the set of this size with the lowest cost, after refitting those with the lowest predicted cost.
   const std::pair<Refit, Set>& best_of(std::size_t size) {
     auto& best = refitted_[size];
     if (best) return *best;
@@ -258,8 +261,8 @@ class Selection {
     set.erase(set.begin() + static_cast<std::ptrdiff_t>(i));
     return set;
   }
-  /// Drops members that the others make redundant, the least important first. A set may contain such members,
-  /// because only few sets of each smaller size were refitted.
+  /// Drops members of the set that its other members make redundant, the least important first. A set may
+  /// contain such members, because only few sets of each smaller size were refitted.
   void drop_idle(Set& set, Refit& chosen) const {
     while (!set.empty()) {
       std::vector<double> evidence;
@@ -276,7 +279,8 @@ class Selection {
       chosen = std::move(cheapest);
     }
   }
-  /// Returns the rise of the cost without each member of the set, all others at their given values.
+  /// Returns the rise of the cost when each member in turn is removed. Parameters outside the set keep their
+  /// given values.
   [[nodiscard]] std::vector<double> evidence(const Set& set, const Fit& only) const {
     std::vector<double> rises;
     for (std::size_t i = 0; i < set.size(); ++i) rises.push_back(gain(refit(without(set, i)).fit, only));
@@ -305,7 +309,7 @@ class Selection {
     if (known != as_well_.end()) return known->second;
     return as_well_[set] = refit(set).cost - chosen.cost < options_.each;
   }
-  /// Returns the names of single parameters that could replace one of the set.
+  /// Returns the names of single parameters that could each replace parameter `which` of the set.
   [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which, const Refit& chosen) const {
     std::vector<std::string> names;
     std::size_t tried = 0;
@@ -352,7 +356,7 @@ class Selection {
   }
   using Exchange = std::pair<Set, Set>;  ///< removed members, replacement
   /// Returns the replacements of members of the set by one or two other parameters. A replacement that
-  /// contains a smaller one is left out.
+  /// contains a smaller replacement is left out.
   [[nodiscard]] std::vector<Exchange> exchanges(const Set& set, const Refit& chosen) const {
     const double here = predict(set).excess;
     std::vector<Exchange> found;

@@ -11,14 +11,14 @@
 
 namespace swingbank::validate::fit {
 
-/// A parameter whose given value the records contradict.
+/// A parameter whose given value is contradicted by the records.
 struct WrongParameter {
-  FittedParameter fit;  ///< start: given value; value and interval: with the other parameters of the set free
+  FittedParameter fit;  ///< `start`: given value; estimate and interval with the whole set free
   /// Rise of the cost with this parameter at its given value and the rest of the set refitted.
   double evidence = 0;
   /// `evidence` divided by the cost of the given model minus the cost of the fit of all parameters; 0 to 1.
   double share = 0;
-  /// Names of single parameters that explain the records equally well in its place.
+  /// Names of single parameters that could each replace this one and explain the records equally well.
   std::vector<std::string> tied = {};
 };
 
@@ -48,11 +48,11 @@ struct SparseOptions {
   event::Progress progress = {};  ///< recipient of progress messages; empty: none
   /// Called between sets; if it returns true, no parameter is named.
   std::function<bool()> stop = {};
-  /// A fit of every parameter to these events, with their noise model and with standard errors. Null:
+  /// A fit of every parameter to these events, with their noise model and with standard errors. If null,
   /// select_parameters() makes this fit and estimates the noise from its residual.
   const Fit* all = nullptr;
-  /// No parameter is named if the criterion improves on the full fit by less than this, after subtracting
-  /// `each` for every named parameter.
+  /// No parameter is named if the criterion improves on the full fit by less than this value. `each` is
+  /// subtracted from the improvement for every named parameter.
   double least = -std::numeric_limits<double>::infinity();
 };
 

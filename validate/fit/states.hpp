@@ -15,23 +15,23 @@ inline std::size_t switching_numbers(const event::FitEvent& event) {
   return event.switchings.size() * (event.turns() ? 2 : 1);
 }
 
-/// One unit of a switching time [s].
+/// Unit of a switching time in the search [s].
 inline constexpr double kSwitchScale = 1e-3;
-/// One unit of an angle jump [rad], and the prior standard deviation in this unit. An error of 20 % in a
-/// reactance causes an error of about 0.1 rad in the jump.
+/// Unit of an angle jump in the search [rad], and its prior standard deviation in this unit. An error of 20 %
+/// in a reactance causes an error of about 0.1 rad in the jump.
 inline constexpr double kTurnScale = 1e-3, kTurnPrior = 100;  ///< [rad]; [kTurnScale]
 
 inline constexpr int kStates = 4;  ///< P, Q [pu], angle [rad], speed [pu]
-/// Kind of each state, in this order.
+/// Kind of each state, in the order of kStates.
 inline constexpr std::array<playin::SensitivityParameter::Kind, kStates> kStateKind = {
     playin::SensitivityParameter::Kind::P, playin::SensitivityParameter::Kind::Q,
     playin::SensitivityParameter::Kind::angle, playin::SensitivityParameter::Kind::speed};
-/// One unit of each state in the search: far below any observable change and far above rounding errors.
+/// Unit of each state in the search. It is far below observable changes and far above rounding errors.
 inline constexpr std::array<double, kStates> kStateScale = {1e-3, 1e-3, 1e-3, 1e-5};
-/// Prior standard deviation of the initial state, in those units: a plant is nearly in steady state before an
-/// event.
+/// Prior standard deviation of the initial state, in units of kStateScale. It is small, because a plant is
+/// nearly in steady state before an event.
 inline constexpr std::array<double, kStates> kStatePrior = {20, 20, 20, 20};
-/// The same in physical units.
+/// Prior standard deviation of the initial state in physical units.
 inline constexpr std::array<double, kStates> kStatePriorSd = [] {
   std::array<double, kStates> prior_sd{};
   for (std::size_t k = 0; k < kStates; ++k) prior_sd[k] = kStateScale[k] * kStatePrior[k];

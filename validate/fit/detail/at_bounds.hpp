@@ -1,7 +1,7 @@
 #pragma once
-// Active set of bounds in a Ceres problem. Variables at a bound are fixed while the others move, if a move
-// beyond the bound would reduce the cost. Ceres projects steps onto the bounds. A projected step need not
-// reduce the cost, so a search without an active set may end before the optimum.
+// Active set of bounds in a Ceres problem. A variable at a bound is fixed while the others move, if a move of
+// this variable beyond the bound would reduce the cost. Ceres projects steps onto the bounds. A projected
+// step need not reduce the cost, so a search without an active set may end before the optimum.
 #include <ceres/ceres.h>
 
 #include <map>

@@ -23,7 +23,7 @@ struct Setting {
   double tolerance;
   bool lenient = false;  ///< see FitOptions::lenient
   bool goes_on = false;  ///< whether a lenient search reuses sensitivities that predicted a step well
-  /// Whether the start passes can_exist_beside(`plant`). If so, the search refuses plants that do not pass.
+  /// Whether the start passes can_exist_beside(`plant`). If so, the search refuses every plant that fails it.
   bool can_exist = false;
 };
 
@@ -60,9 +60,10 @@ class GaussianPrior : public ceres::CostFunction {
   const double* discrepancy_;
 };
 
-/// Penalty that enforces the physical orderings of a machine's parameters (Xd > X'd > ...). It acts below a
-/// gap of kMargin between two parameters, or below the start's gap if that is smaller. A start that violates
-/// an ordering is drawn back to it, unless the violation may be intended (Ordering::may_be_meant).
+/// Penalty that enforces the physical orderings of a machine's parameters (Xd > X'd > ...). It acts if the
+/// gap between two parameters is below kMargin, or below their gap at the start if that is smaller. A start
+/// that violates an ordering is drawn back to it, unless the violation may be intended
+/// (Ordering::may_be_meant).
 class Walls : public ceres::CostFunction {
  public:
   Walls(const Setting& setting, const double* discrepancy) : setting_(setting), discrepancy_(discrepancy) {
@@ -113,11 +114,11 @@ class Walls : public ceres::CostFunction {
   }
 
  private:
-  static constexpr double kMargin = 0.01;      ///< limit of the gap ln(greater / smaller)
-  static constexpr double kSteepness = 0.001;  ///< violation of that limit which costs one reduced chi-square
+  static constexpr double kMargin = 0.01;      ///< gap ln(greater / smaller) below which the penalty acts
+  static constexpr double kSteepness = 0.001;  ///< shortfall of the gap that costs one reduced chi-square
   struct Wall {
     std::array<int, 2> parameters, axes;  ///< greater, smaller; axis -1: that parameter is fixed
-    double foot;                          ///< gap ln(greater / smaller) below which the penalty acts
+    double foot;                          ///< the same limit for this pair, lower if the start's gap is
   };
   static double gap(const sim::plant::Block& b, const sim::plant::Ordering& o) {
     return std::log(b.p[static_cast<std::size_t>(o.greater)] / b.p[static_cast<std::size_t>(o.smaller)]);

@@ -9,15 +9,15 @@ namespace swingbank::validate::fit::fitting {
 namespace {
 
 constexpr double kFirstPart = 0.5;  ///< end of the first part after the last switching [s]
-/// A response diverges if the reduced chi-square of the later part is at least this multiple of that of the
-/// first part [-].
+/// A response diverges if the reduced chi-square after the first part is at least this multiple of that in
+/// the first part [-].
 constexpr double kRunAway = 10;
-/// Share of the later part's reduced chi-square that the fitted switching times must remove [-].
+/// Share of the reduced chi-square after the first part that fitted switching times must remove [-].
 constexpr double kGone = 0.75;
 constexpr int kEarlySteps = 12;
 
-/// Returns whether the fit may move a switching time. Excludes component records and tests with an open
-/// breaker.
+/// Returns whether the fit may move a switching time of the event; false for component records and tests with
+/// an open breaker.
 bool is_open(const event::FitEvent& e) {
   return !playin::is_part(e.record) && !e.record.breaker() &&
          std::ranges::any_of(e.switchings, [](const switching::Switching& s) { return s.uncertainty > 0; });
@@ -44,7 +44,7 @@ noise::WhitenedEvents first_part(const noise::WhitenedEvent& whole, double until
   return {{std::move(e)}, noise::NoiseModel({std::move(noise)})};
 }
 
-/// Returns the reduced chi-square of a response in white noise, up to `until` and after it.
+/// Returns the reduced chi-square of a response, for white noise: up to `until`, and after it.
 std::pair<double, double> left(const noise::WhitenedEvent& whole, const playin::Response& response,
                                double until) {
   const event::FitEvent& e = whole.event;
@@ -63,7 +63,7 @@ std::pair<double, double> left(const noise::WhitenedEvent& whole, const playin::
   return {early / std::max(1, first), late / std::max(1, then)};
 }
 
-/// Returns the start state of an event; empty if it starts at the switching times of its FitEvent.
+/// Returns the fitted start state of an event; empty if the prepared switching times (FitEvent) are kept.
 std::optional<EventState> early_state(const sim::plant::PlantUnderTest& tested,
                                       const noise::WhitenedEvent& whole, const FitOptions& options) {
   const event::FitEvent& e = whole.event;

@@ -10,11 +10,11 @@
 namespace swingbank::validate::fit::fitting {
 namespace {
 
-/// A step's prediction error up to this share of the residuals' change is attributed to the sensitivities; a
-/// larger one is due to the response's nonlinearity.
+/// Limit of a step's prediction error, relative to the change of the residuals, for correcting sensitivities.
+/// A larger error is attributed to nonlinearity of the response, not to the sensitivities.
 constexpr double kOffAtMost = 0.2;
-/// Sensitivities are reused if they predicted a step up to this share of the residuals' change, at most kGoOn
-/// times in a row.
+/// Sensitivities are reused, at most kGoOn times in a row, if their prediction error of the last step is at
+/// most this share of the residuals' change.
 constexpr double kMaxPredictionError = 0.2;
 constexpr int kGoOn = 6;
 

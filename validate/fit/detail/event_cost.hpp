@@ -11,8 +11,8 @@ namespace swingbank::validate::fit::fitting {
 noise::RowMatrix triangle_of(const noise::RowMatrix& e);
 
 /// Cost of one event. The parameter blocks are the plant's z (absent if no parameter is free) and the event's
-/// state. Ceres uses only products of residuals and sensitivities. It therefore receives the triangular
-/// factor with the same products, which has one row per variable instead of one per compared value.
+/// state. Ceres uses only products of residuals and sensitivities. It therefore receives a triangular factor
+/// with the same products. The factor has one row per variable instead of one per compared value.
 class EventCost : public ceres::CostFunction {
  public:
   EventCost(const Setting& setting, std::size_t event);
@@ -24,7 +24,7 @@ class EventCost : public ceres::CostFunction {
   [[nodiscard]] playin::Response response(const sim::plant::Plant& plant, const EventState& state,
                                           bool lenient) const;
   /// Limits the number of points at which sensitivities are computed from now on. After the last step of a
-  /// search none are needed, and zeros are returned.
+  /// search they are not needed, and zeros are returned in their place.
   void look_at(int points) { points_ = points; }
   /// Requests new sensitivities at the next evaluation if the present ones were reused from an earlier point.
   void renew() { renew_ = looked_.gone_on > 0; }
@@ -39,8 +39,8 @@ class EventCost : public ceres::CostFunction {
   /// column receives a share proportional to its squared norm (Broyden, Math. Comp. 19, 1965, p. 577, with
   /// each unknown scaled by its column's norm).
   [[nodiscard]] Eigen::MatrixXd by_column(const Eigen::VectorXd& missed, const Eigen::VectorXd& step) const;
-  /// Returns whether the previous sensitivities predicted the residuals at the last point well enough. If so,
-  /// they are updated and assigned to the last point.
+  /// Returns whether the previous sensitivities predicted the residuals at the last point well enough. If
+  /// they did, updates them and assigns them to the last point.
   [[nodiscard]] bool reuse_sensitivities() const;
   /// Stores new sensitivities at the last point, corrected by the prediction errors of earlier steps.
   void take(noise::RowMatrix e) const;
@@ -57,8 +57,8 @@ class EventCost : public ceres::CostFunction {
     std::shared_ptr<const playin::TrajectoryCache> cache;
   };
   mutable Last last_;
-  /// The point at which the sensitivities apply: its sensitivities and residuals `e`, the correction `off` of
-  /// newly computed sensitivities, and the number of reuses `gone_on`.
+  /// The point at which the sensitivities apply. `e`: its sensitivities and residuals; `off`: correction of
+  /// newly computed sensitivities; `gone_on`: number of reuses.
   struct Looked {
     Eigen::VectorXd at;
     noise::RowMatrix e, off;
