@@ -168,7 +168,7 @@ class Calibrating {
             {fmt::format("draw {}", order[k].second + 1), draws[order[k].second], order[k].first});
     return starts;
   }
-  /// Appends a fit for each start.
+  /// Fits from each start and appends the fits.
   void refine(const Starts& starts, const std::vector<fit::EventState>& states, std::vector<fit::Fit>& fits) {
     std::vector<fit::Fit> found(starts.size());
     in_parallel(
@@ -345,7 +345,7 @@ class Calibrating {
     fill_parameters(inverse, unit, widening);
     c_.unidentified = find_unidentified(data, unit);
     if (!options_.only_given) try_others(data + prior, inverse, unit, widening);
-    for (std::size_t e = 0; e < jacobians.size(); ++e)  // effect of parameter uncertainty on held-out events
+    for (std::size_t e = 0; e < jacobians.size(); ++e)  // chi2 that parameter errors add to held-out events
       allowance_.push_back(
           out_[e] ? unseen_allowance(fit::information(jacobians[e]), robust, c_.prepared[e].values()) : 0.0);
   }
@@ -396,8 +396,8 @@ class Calibrating {
     }
   }
 
-  /// Adds the chi-square increase of the bias correction to the limits. The correction leaves the optimum, so
-  /// the increase does not indicate a missing effect.
+  /// Adds the chi-square increase of the bias correction to the limits. The correction moves the parameters
+  /// away from the optimum, so the increase does not indicate a missing effect.
   void allow_correction() {
     double cost = 0, values = 0;
     for (std::size_t e = 0, seen = 0; e < after_.size(); ++e) {

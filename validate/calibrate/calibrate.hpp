@@ -41,7 +41,7 @@ struct ChannelScore {
   std::string unit;                      ///< unit of the errors
   double scale = 1;                      ///< value of 1 pu of the record's base [unit]
   double rms_before = 0, rms_after = 0;  ///< RMS of model - measured [unit]
-  double over_noise = 0;                 ///< rms_after over the standard deviation of the noise in the fit
+  double over_noise = 0;                 ///< rms_after / standard deviation of the noise in the fit
 };
 /// Reduced chi-square of one event before and after the calibration.
 struct EventScore {
@@ -49,8 +49,8 @@ struct EventScore {
   bool seen = true;              ///< false: held out; only the event's own state was fitted
   double before = 0, after = 0;  ///< reduced chi-square
   double limit = 0;              ///< limit of the reduced chi-square
-  /// Part of `limit` in addition to noise: uncertainty of the fitted parameters in a held-out event, and
-  /// chi-square increase of the correction for voltage noise.
+  /// Part of `limit` beyond the limit of noise alone. It covers the uncertainty of the fitted parameters in a
+  /// held-out event, and the chi-square increase of the correction for voltage noise.
   double allowance = 0;
   double colour = 0;                   ///< lag-1 autocorrelation of the pre-event residual
   std::vector<ChannelScore> channels;  ///< errors of each channel
@@ -101,7 +101,7 @@ struct StartScore {
   std::string name;  ///< "closed form", "model", "network", "draw 3"
   double before = 0,
          after = 0;     ///< reduced chi-square of the fitted events; infinite if the simulation fails
-  bool agrees = false;  ///< reached the best optimum
+  bool agrees = false;  ///< whether it reached the best optimum
 };
 
 /// Result of a calibration.
@@ -118,7 +118,7 @@ struct Calibration {
   double before = 0, after = 0, limit = 0;            ///< reduced chi-square of the fitted events; its limit
   std::vector<StartScore> started;                    ///< each refined start, in the order tried
   int agreeing = 0;                                   ///< number of starts that reached the best optimum
-  bool converged = false;                             ///< the search ended at a minimum
+  bool converged = false;                             ///< whether the search ended at a minimum
   double voltage_noise = 0;             ///< share of the pre-event variation of V that is instrument noise
   fit::Fit fit;                         ///< fit of the events that are not held out
   std::vector<fit::EventState> states;  ///< state of every event at the fitted parameters
@@ -154,11 +154,11 @@ int pre_event_samples(const noise::WhitenedEvents& events);
 double reduced_chi2_limit(const event::FitEvent& event, const fit::EventFit& fitted, int pre_event,
                           double least);
 
-/// Returns the increase of a held-out event's reduced chi-square by parameter uncertainty: its mean plus 3.09
-/// standard deviations. It is exceeded with probability 0.001 if many parameter combinations are uncertain,
-/// and with about 0.02 if one dominates, because a single squared Gaussian has a longer tail. `information`:
-/// Fisher information of the event; `covariance`: covariance of the parameters, in the same units; `values`:
-/// number of compared values.
+/// Returns a bound on the increase of a held-out event's reduced chi-square due to parameter uncertainty: the
+/// mean increase plus 3.09 standard deviations. It is exceeded with probability 0.001 if many parameter
+/// combinations are uncertain. The probability is about 0.02 if one combination dominates, because a single
+/// squared Gaussian has a longer tail. `information`: Fisher information of the event; `covariance`:
+/// covariance of the parameters, in the same units; `values`: number of compared values.
 double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixXd& covariance, int values);
 
 /// Returns the clause on the residual of adequate events: "the residual is noise". If an event exceeds the
@@ -166,8 +166,8 @@ double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixX
 /// parameters.
 std::string residual_text(const std::vector<EventScore>& events);
 
-/// Returns the reduced chi-square and channel errors of one event before and after. Both fits must use the
-/// noise of `event`; otherwise throws std::logic_error.
+/// Returns the reduced chi-square and channel errors of one event before and after the calibration. Both fits
+/// must use the noise of `event`; otherwise throws std::logic_error.
 EventScore score_event(noise::WhitenedEvent event, const fit::EventFit& before, const fit::EventFit& after,
                        bool seen, int pre_event, double least);
 

@@ -69,7 +69,7 @@ class EventResidual : public ceres::CostFunction {
   const event::FitEvent& event_;
 };
 
-/// Returns the event's whitened residuals with the prepared switching times and start.
+/// Returns the event's whitened residuals with its prepared switching times and initial state.
 fit::EventFit as_played(const Setting& setting, const sim::plant::Plant& plant,
                         const noise::WhitenedEvents& events, std::size_t e) {
   fit::EventFit f;

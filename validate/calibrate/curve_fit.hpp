@@ -17,7 +17,7 @@ struct CurveFitOptions {
   std::vector<std::string> fixed;      ///< names of fixed parameters, e.g. "GENROU.Xl"
   event::FitEventOptions events = {};  ///< measured_states is ignored: only P and Q are fitted
   int iterations = 200;                ///< maximum number of iterations
-  double adequate = thresholds::adequacy.reduced_chi2;  ///< as CalibrateOptions::adequate
+  double adequate = thresholds::adequacy.reduced_chi2;  ///< see CalibrateOptions::adequate
 };
 
 /// Result of an unweighted least-squares fit of P and Q.
@@ -26,7 +26,7 @@ struct CurveFit {
   /// Fitted parameters. Their intervals come from \f$ s^2 (J^T J)^{-1} \f$ with \f$ s^2 = RSS / (values -
   /// parameters) \f$, as parameter derivation tools report them; infinite where \f$ J^T J \f$ is singular.
   std::vector<fit::FittedParameter> parameters;
-  std::vector<EventScore> events;  ///< with prepared switching times and start, which are not fitted
+  std::vector<EventScore> events;  ///< switching times and initial states are not fitted
   double rms_before = 0,
          rms_after = 0;          ///< RMS error of P and Q in the fitted events [pu on the record's base]
   double before = 0, after = 0;  ///< reduced chi-square of the fitted events before and after the fit
@@ -37,7 +37,7 @@ struct CurveFit {
   double seconds = 0;                        ///< elapsed time [s]
 };
 
-/// Fits the records that are not held out. Throws InputError as calibrate().
+/// Fits the records that are not held out. Throws InputError in the same cases as calibrate().
 CurveFit curve_fit(const plant::PlantModel& model, std::vector<record::Record> records,
                    const CurveFitOptions& options);
 

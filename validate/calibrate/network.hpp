@@ -11,10 +11,10 @@ namespace swingbank::validate::calibrate {
 
 /// Content of an estimate file.
 struct NetworkEstimate {
-  std::string file, network, kind, machine, dataset;  ///< file: the JSON; network: path of its weights
+  std::string file, network, kind, machine, dataset;  ///< file: estimate (JSON); network: its weights
   /// Estimate of one parameter.
   struct Parameter {
-    std::string name, effect, unit;  ///< name in the dataset ("H", "SEXS.K"); "GENROU"; "s"
+    std::string name, effect, unit;  ///< name in the dataset ("H", "SEXS.K"); effect ("GENROU"); unit ("s")
     double value = 0;                ///< mean over the records [unit]
     double rms_error = 0,
            scatter = 0;        ///< RMS error on validation records; standard deviation between records [unit]
@@ -39,9 +39,9 @@ struct NetworkEstimate {
 NetworkEstimate read_estimate(const std::filesystem::path& file);
 
 /// Returns the plant with the network's estimates, clamped to each parameter's search range. Throws
-/// InputError: the network was trained for another machine model or for an effect that the plant lacks, or a
-/// value of the plant is more than three prior standard deviations (`prior_sd`, relative) away from the range
-/// or constant value in the training data.
+/// InputError if the network was trained for another machine model or for an effect that the plant lacks.
+/// Also throws it if a value of the plant is more than three prior standard deviations (`prior_sd`, relative)
+/// outside the range of the training data.
 sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::PlantModel& model,
                                   double prior_sd);
 

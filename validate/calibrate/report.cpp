@@ -16,7 +16,8 @@ using nlohmann::json;
 
 std::string percent(double share) { return fmt::format("{:.0f} %", 100 * share); }
 
-/// Returns whether a value is so far from the model's that the prior biases it and correlated parameters.
+/// Returns whether a value is so far from the model's value that the prior biases it and correlated
+/// parameters.
 bool strained(const fit::FittedParameter& p) {
   const bool logarithmic = p.start > 0 && p.value > 0;
   const double moved = logarithmic ? std::abs(std::log(p.value / p.start)) : 0.0;

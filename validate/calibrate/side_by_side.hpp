@@ -16,8 +16,8 @@ namespace swingbank::validate::calibrate {
 
 /// True values by name ("GENROU.H"); empty: unknown.
 using Truth = std::map<std::string, double>;
-/// Reads true values from a plant file (.toml) or a truth file of `blind-test` (.json). Throws InputError:
-/// neither of them, or another MVA base than the model's.
+/// Reads true values from a plant file (.toml) or a truth file of `blind-test` (.json). Throws InputError if
+/// the file is neither of them, or has another MVA base than the model.
 Truth read_truth(const std::filesystem::path& file, const plant::PlantModel& model);
 
 /// Estimate by one method, with the reduced chi-square of every event. Switching times and start of each
@@ -61,12 +61,12 @@ report::Table parameters_beside(const std::vector<Way>& ways, const Truth& truth
 report::Table events_beside(const std::vector<Way>& ways);
 /// Both tables and, if the truth is known, each method's error.
 std::string beside_report(const std::vector<Way>& ways, const Truth& truth);
-/// The same as JSON.
+/// Both tables and the errors as JSON.
 nlohmann::json beside_json(const std::vector<Way>& ways, const Truth& truth);
 
 /// Report of a curve fit alone.
 std::string terminal_report(const CurveFit& f, const Truth& truth);
-/// The same as JSON.
+/// Report of a curve fit as JSON.
 nlohmann::json curve_fit_json(const CurveFit& f, const Truth& truth);
 /// Origin of the values, for the head comment of the plant file.
 std::vector<std::string> provenance_lines(const CurveFit& f, const plant::PlantModel& from,

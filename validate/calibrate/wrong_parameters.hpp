@@ -19,7 +19,8 @@ struct WrongParameters {
 };
 
 /// Selects the parameters that must change. Held-out records are not used. The other options used are
-/// `prior_sd`, `fixed`, `events`, `adequate` and `progress`. Throws InputError as calibrate().
+/// `prior_sd`, `fixed`, `events`, `adequate` and `progress`. Throws InputError in the same cases as
+/// calibrate().
 WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<record::Record> records,
                                  const CalibrateOptions& options);
 
@@ -28,7 +29,7 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
 std::string wrong_sentence(const fit::SparseSelection& found, double adequate);
 /// The sentence and a table: old and new value, interval, evidence, and share of the error.
 std::string wrong_text(const WrongParameters& w);
-/// The same as JSON.
+/// The result as JSON.
 nlohmann::json wrong_json(const WrongParameters& w);
 
 }  // namespace swingbank::validate::calibrate

@@ -14,7 +14,7 @@ namespace swingbank::validate::calibrate {
 namespace {
 
 constexpr double kTriedSeconds = 20.0;  ///< length of a simulated event [s]
-constexpr double kAt = 2.0;             ///< start of its disturbance [s]
+constexpr double kAt = 2.0;             ///< start of the disturbance [s]
 
 /// Builder of simulated events with a given voltage, at the operating point of a recorded event.
 class Trial {
@@ -25,7 +25,7 @@ class Trial {
     r.t.clear();
     for (int k = 0; k * step <= kTriedSeconds; ++k) r.t.push_back(first + k * step);
     event_.switchings.clear();
-    for (const double t : switchings)  // between samples, as in real records
+    for (const double t : switchings)  // they lie between samples, as in real records
       event_.switchings.push_back(
           {.time = first + std::floor(t / step) * step + 0.4 * step, .uncertainty = 0.5 * step});
     event_.start.drift = 0;
@@ -108,7 +108,7 @@ std::vector<UnidentifiedCombination> find_unidentified(const Eigen::MatrixXd& in
   std::vector<UnidentifiedCombination> unidentified;
   for (Eigen::Index k = 0; k < information.rows(); ++k) {
     const double value = std::max(0.0, eigen.eigenvalues()[k]), decided = value / (1 + value);
-    if (decided >= thresholds::parameters.identified) break;  // eigenvalues increase
+    if (decided >= thresholds::parameters.identified) break;  // later eigenvalues are larger
     const Eigen::VectorXd v = eigen.eigenvectors().col(k);
     UnidentifiedCombination combination;
     combination.decided = decided;

@@ -10,7 +10,7 @@ namespace swingbank::validate::calibrate {
 namespace {
 
 constexpr double kKick = 1e-3;             ///< impulse in one sample of V (relative) or theta [rad]
-constexpr double kSettle = 3, kFade = 12;  ///< duration before and after that sample [s]
+constexpr double kSettle = 3, kFade = 12;  ///< duration before and after the impulse [s]
 
 /// Whitened residual of the playback, and its sensitivities.
 struct WhitenedResidual {

@@ -2,7 +2,7 @@
 // Bias of a calibration due to noise of the played-in voltage (errors in variables). The noise passes through
 // the plant into the response and into the sensitivities. It biases the fit towards parameters with low noise
 // transfer (reactances too large), and the noise in the sensitivities counts as information. Whitening
-// removes neither effect; this file computes both, and the calibration subtracts them.
+// removes neither effect. This file computes both, and the calibration subtracts them.
 #include "validate/fit/sensitivities.hpp"
 #include "validate/noise/voltage_noise.hpp"
 
