@@ -1,7 +1,8 @@
 #pragma once
 // Linearised residuals of a whole plant, for changes that act anywhere in it: parameters at their null
-// values, effects of the machine, of instruments and of converters. A trial simulates the plant in closed
-// loop; the plant's other parameters and the events' states stay linear.
+// values, effects of the machine, of instruments and of converters. A trial (a candidate for such a change)
+// is simulated with the whole plant in closed loop. The plant's other parameters and the events' states stay
+// linear.
 #include "validate/reduced/reduced_cost.hpp"
 
 namespace swingbank::validate::reduced {
@@ -11,7 +12,7 @@ class ClosedLoop {
  public:
   /// Takes an inference without free inputs. `events` must outlive this object.
   ClosedLoop(Inference inference, const noise::WhitenedEvents& events);
-  /// One event.
+  /// One linearised event.
   struct Event {
     Eigen::MatrixXd
         basis;  ///< orthonormal basis of the state's columns: [value, state variable][state variable]
@@ -40,7 +41,7 @@ class ClosedLoop {
 /// Cost of a trial in closed loop: its responses are changes of the residuals [row of all events].
 class ClosedLoopCost : public ReducedCost {
  public:
-  /// `held` as in ReducedPlant. `plant` must outlive this object. `conventions` are those of the trial.
+  /// `held`: see ReducedPlant. `plant` must outlive this object. `conventions` are those of the trial.
   ClosedLoopCost(const ClosedLoop& plant, const sim::Conventions& conventions, const std::vector<char>& held);
 
   [[nodiscard]] const Inference& inference() const override { return plant_.inference(); }

@@ -1,7 +1,8 @@
 #pragma once
 // A torque or a field voltage that is a free function of time in addition to a model. If a free torque
-// explains the records, a mechanical effect is missing; if a free field voltage does, an effect of the
-// excitation. The input's time series is reported, and user-defined models are fitted to it by regression.
+// explains the records, a mechanical effect is missing. If a free field voltage explains them, an excitation
+// effect is missing. The input's time series is reported, and user-defined models are fitted to it by
+// regression.
 #include <memory>
 
 #include "validate/reduced/infer.hpp"
@@ -11,8 +12,8 @@ namespace swingbank::validate::reduced {
 /// An inferred input with its evidence.
 struct FreeInput {
   event::InputKind kind = event::InputKind::none;  ///< torque or field voltage
-  /// Fit of the plant with the input, without the free parameters. The events' states contain the input.
-  /// `failed` is set if the plant cannot be simulated.
+  /// Fit of the plant with the input; `parameters` is empty. The events' states contain the input. `failed`
+  /// is set if the plant cannot be simulated.
   fit::Fit fit;
   std::vector<Eigen::VectorXd> deviation;  ///< posterior standard deviation of the input [event][knot] [pu]
   /// 2 ln(Bayes factor) over the model without the input, by Laplace's approximation, at the most probable

@@ -24,8 +24,9 @@ constexpr double kRare = 0.1;
 /// kMinimumToEvolve starts.
 constexpr int kStagnant = 50;
 constexpr std::size_t kMinimumToEvolve = 8;
-/// Differential evolution: share of the starts, the best, toward which a start moves; share of the parameters
-/// that a move changes; minimum of its random relative length (Zhang and Sanderson 2009).
+/// Differential evolution. kShareOfBest: share of the starts, the best ones, toward which a start moves.
+/// kShareMoved: share of the parameters that a move changes. kShortestMove: minimum of the random relative
+/// length of a move (Zhang and Sanderson 2009).
 constexpr double kShareOfBest = 0.15, kShareMoved = 0.9, kShortestMove = 0.4;
 /// First stream of the random numbers of the evolution, beyond those of the draws.
 constexpr std::uint32_t kStreamsOfEvolution = 1u << 20;
@@ -62,7 +63,7 @@ class Identifying {
   struct Start {
     VectorXd z;
     double gain = 0, cost = std::numeric_limits<double>::infinity(), damping = 1e-2;
-    std::size_t from = 0;  ///< index of its point
+    std::size_t from = 0;  ///< index of the point at which it starts
     bool done = false;
   };
   /// Optimises the starts by successive halving: every start takes `steps` steps, then the better half takes
@@ -166,8 +167,9 @@ class Identifying {
     std::ranges::copy(given, std::back_inserter(starts_));  // given starts are always optimised
   }
   /// Improves the starts by differential evolution (Storn and Price 1997). Each start moves toward one of the
-  /// best and by the difference of two others. It keeps the move if its cost falls. Unlike gradient steps, it
-  /// crosses discontinuities of the cost, where a limiter begins to pick up in another event.
+  /// best starts and by the difference of two other starts. The move is kept if the cost falls. Unlike
+  /// gradient steps, a move can cross discontinuities of the cost, where a limiter begins to pick up in
+  /// another event.
   void evolve() {
     if (starts_.size() < kMinimumToEvolve) return;
     double least = std::numeric_limits<double>::infinity();
@@ -210,7 +212,7 @@ class Identifying {
       return playin::can_run(sim::plant::block_at(plant, f.id.block));
     });
   }
-  /// Takes one step of every start that has not converged; returns false if all have.
+  /// Takes one step of every start that has not converged. Returns false if all starts have converged.
   bool advance() {
     const auto np = static_cast<Index>(axes_.size());
     std::vector<Start*> moving;

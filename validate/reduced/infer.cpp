@@ -20,7 +20,8 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 constexpr int kIntensities = 5;
 constexpr double kSameIntensity =
     0.7;  ///< difference of logarithms below which two intensities count as equal
-/// Maximum factor between consecutive intensities: if residuals are nonlinear in the inputs; if linear.
+/// Maximum factor between consecutive intensities. kNearIntensity: for residuals that are nonlinear in the
+/// inputs; kAnyIntensity: for linear residuals.
 constexpr double kNearIntensity = 100, kAnyIntensity = 1e12;
 /// Knots are one sample apart until kCloseKnots [s] after a switching time. Then their spacing grows by the
 /// factor kKnotGrowth from knot to knot, up to kFarApart [s].
@@ -28,7 +29,7 @@ constexpr double kCloseKnots = 0.25, kKnotGrowth = 1.15, kFarApart = 0.15;
 constexpr double kMostKnots = 100;  ///< maximum number of widely spaced knots in a long record
 
 /// Prior standard deviation of an input at the first switching time, and of the field voltage's step at later
-/// switching times [pu]. A turbine's torque is continuous; a rectifier's voltage may have a step.
+/// switching times [pu]. A turbine's torque is continuous, but a rectifier's voltage may have a step.
 constexpr double kFirstTorque = 1e-3, kFirstField = 10.0;
 
 Knots knots_of(const event::FitEvent& event, const event::EventState& state) {
@@ -133,8 +134,7 @@ class Inferring {
   [[nodiscard]] double most_probable_intensity(const Inference& about) const {
     constexpr double kLeastIntensity = 1e-10, kMostIntensity = 1e2, kIntensityFactor = 3.0;
     Normal data = without_walks(about.events, axes_, at_, events_);
-    Point none =
-        at_;  // with inputs of zero, whose walk has no cost: avoids the cancellation of large numbers
+    Point none = at_;  // zero inputs have no walk cost, which avoids the cancellation of large numbers
     for (std::size_t e = 0; e < events_.size(); ++e) {
       const Index states = at_.states[e].size(), inputs = data.own[e].rows() - states;
       VectorXd input(inputs);
@@ -200,7 +200,7 @@ class Inferring {
     add_walks(sensitivities, at_, intensity_, normal);
     return normal;
   }
-  /// Returns the values of an input that has as many knots; otherwise zeros.
+  /// Returns the input's values at its knots if it has as many knots as `knots`; otherwise zeros.
   [[nodiscard]] static VectorXd at_knots(const playin::PiecewiseLinear& input, const Knots& knots) {
     if (input.t.size() != knots.t.size()) return VectorXd::Zero(static_cast<Index>(knots.t.size()));
     return Eigen::Map<const VectorXd>(input.value.data(), static_cast<Index>(input.value.size()));
@@ -218,7 +218,8 @@ class Inferring {
     if (inputs_.field) s.field = {knots.t, {p.fields[e].begin(), p.fields[e].end()}};
     return s;
   }
-  /// Returns the knots; those at switching times are moved to the times of the state.
+  /// Returns the knots of event `e`. The knots at switching times are moved to the switching times of the
+  /// state `s`.
   [[nodiscard]] Knots knots_of_moved(std::size_t e, const event::EventState& s) const {
     Knots knots = knots_[e];
     if (s.switchings.empty()) return knots;

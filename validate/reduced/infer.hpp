@@ -56,8 +56,8 @@ struct Inference {
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
-/// A change of the simulated plant outside its free parameters: of a parameter at its null value, or an error
-/// of an instrument.
+/// A change of the simulated plant in quantities that are not free: a parameter leaves its null value, or an
+/// instrument has an error.
 struct Change {
   sim::plant::Plant from, to;  ///< plant before and after the change
 };
@@ -67,7 +67,7 @@ void add_changes(Inference& inference, const noise::WhitenedEvents& events,
                  const sim::Conventions& conventions, std::span<const Change> changes, int threads);
 
 /// Prior variance rate of an input's random walk [pu^2/s]. A field voltage may run from one ceiling to the
-/// other within a second; a turbine's power changes by about a tenth of its rating in a second.
+/// other within a second. A turbine's power changes by about a tenth of its rating in a second.
 inline constexpr double kFieldWalk = 1.0, kTorqueWalk = 0.01;  ///< field voltage; torque
 /// Returns the square root of the prior precision of each knot given the previous knot [1/pu].
 Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind);

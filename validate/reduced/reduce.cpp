@@ -171,7 +171,7 @@ std::vector<VectorXd> Reduction::states_at(const noise::WhitenedEvents& events, 
 }
 
 ReducedCost::Gain Reduction::find_gain(const noise::WhitenedEvents& events, InputKind kind) const {
-  constexpr double kGainMove = 1e-4, kNoExponent = 0.1;  // change of a logarithm; least exponent
+  constexpr double kGainMove = 1e-4, kNoExponent = 0.1;  // step of a logarithm; smallest exponent of a gain
   const auto rates = [&](const sim::plant::Plant& plant) {
     return event::rates_by_input({plant, conventions_}, events.front(), inference_.states.front(), kind)
         .norm();

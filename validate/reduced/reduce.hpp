@@ -4,8 +4,8 @@
 // voltage. A QR decomposition eliminates the event's state. The remaining cost of any time series u(t) of one
 // input, whichever block generates it, is minimised over the plant's parameters d:
 //   |r + T d + L g u|^2 + |(offset + d) / prior_sd|^2
-// One parameter, d_g, also scales the effect of the input, because a machine's state follows it at the rate
-// 1/T'do (field voltage) or 1/2H (torque). This factor stays explicit: g = exp(exponent d_g).
+// One parameter, d_g, also scales the effect of the input, because a machine's state follows the input at the
+// rate 1/T'do (field voltage) or 1/2H (torque). This factor stays explicit: g = exp(exponent d_g).
 #include <Eigen/SparseCore>
 
 #include "validate/playin/open_loop.hpp"
@@ -26,7 +26,7 @@ class Reduction {
   /// One event.
   struct Event {
     playin::OpenLoop loop;  ///< open loop of the plant's controls
-    /// Mean over each knot's hat function: [knot][time point].
+    /// Weights of the mean over each knot's hat function: [knot][time point].
     Eigen::SparseMatrix<double, Eigen::RowMajor> over_hats;
     /// Triangular factor with columns [plant | changes | torque | field | residual without either input],
     /// after elimination of the event's state.
@@ -54,7 +54,7 @@ class Reduction {
     return kind == event::InputKind::torque ? torque_ : field_;
   }
   /// Returns the events' states that minimise the cost, in their units. `plant`: changes of the plant's
-  /// parameters; `series`: time series of the only input.
+  /// parameters; `series`: time series of the input `kind`, the only free input.
   [[nodiscard]] std::vector<Eigen::VectorXd> states_at(const noise::WhitenedEvents& events,
                                                        event::InputKind kind, const Eigen::VectorXd& plant,
                                                        const Eigen::VectorXd& series) const;
@@ -78,9 +78,9 @@ class Reduction {
 /// series that a block adds to the output of the plant's own controls [knot of all events].
 class ReducedPlant : public ReducedCost {
  public:
-  /// The other input stays free if the reduction contains it. `held` marks plant parameters that are fixed
-  /// because their blocks are absent; empty: none. Only the changes in `freed` are free. The reduction must
-  /// outlive this object.
+  /// The input that is not `kind` stays free if the reduction contains it. `held` marks plant parameters that
+  /// are fixed because their blocks are absent; empty: none. Only the changes in `freed` are free. The
+  /// reduction must outlive this object.
   ReducedPlant(const Reduction& reduction, event::InputKind kind, const std::vector<char>& held = {},
                const std::vector<Eigen::Index>& freed = {});
 

@@ -58,7 +58,7 @@ class ReducedCost {
   /// Sets the eliminated parameters and their priors: those of `at` that are not `held`, then `freed`.
   void eliminate(const Inference& at, Gain gain, const std::vector<char>& held,
                  const std::vector<Eigen::Index>& freed = {});
-  /// Returns the columns of the eliminated parameters among all, [plant | changes].
+  /// Returns the indices of the eliminated parameters among the columns [plant | changes].
   [[nodiscard]] const std::vector<Eigen::Index>& eliminated() const { return free_; }
   /// Adds an event whose T has the eliminated parameters' columns.
   void add(Event event) { events_.push_back(std::move(event)); }
@@ -78,7 +78,7 @@ class ReducedCost {
   std::vector<Event> events_;
   Eigen::VectorXd precision_;  ///< prior precision of the eliminated parameters
   Eigen::MatrixXd inverse_;    ///< inverse Hessian of the eliminated parameters
-  Eigen::VectorXd first_;      ///< half the gradient of their prior
+  Eigen::VectorXd first_;      ///< half the gradient of the prior of these parameters
   double prior_cost_ = 0;      ///< prior cost at the present values
   double gain_precision_ = 0, gain_offset_ = 0;
 };

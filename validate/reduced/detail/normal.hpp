@@ -13,14 +13,14 @@ struct Point {
 };
 
 /// Half the Hessian and half the gradient of the cost. `plant`: block of the plant's parameters; `own`: block
-/// of each event's state, torque and field voltage; `cross`: block between the two.
+/// of each event's state, torque and field voltage; `cross`: block that couples `plant` and `own`.
 struct Normal {
   Eigen::MatrixXd plant;
   Eigen::VectorXd gradient;
   std::vector<Eigen::MatrixXd> own, cross;
   std::vector<Eigen::VectorXd> own_gradient;
-  /// Diagonals of `own` without the inputs' prior. For a small intensity this prior is very stiff, and
-  /// damping in proportion to it would keep all knots at their values.
+  /// Diagonals of `own` without the inputs' prior. For a small intensity this prior is very stiff. Damping in
+  /// proportion to the stiff prior would keep all knots at their values.
   std::vector<Eigen::VectorXd> own_scale;
 };
 
