@@ -26,7 +26,7 @@ namespace {
 constexpr int kAtLeast = 3;
 /// Maximum number of refits of the given model from a better start.
 constexpr int kBases = 2;
-/// Number of iterations of the fits that continue with the new noise model.
+/// Number of iterations of each fit that continues after a new noise estimate.
 constexpr int kOnwards = 4;
 
 class Diagnoser {
@@ -224,7 +224,7 @@ class Diagnoser {
             .torque = &result_.torque,
             .field = &result_.field};
   }
-  /// Tries pairs with the best single hypotheses, one of each slot, until a pair is accepted.
+  /// Tries pairs until one is accepted. Their first effects are the best single hypotheses, one of each slot.
   std::vector<hypothesis::Judgement> try_pairs(const hypothesis::BaseModel& base_model) {
     std::vector<const hypothesis::Judgement*> firsts;
     for (const auto& j : result_.ranked) {
@@ -349,7 +349,7 @@ class Diagnoser {
     pairs = std::move(kept);
   }
   /// Refits each of the best pair's effects alone from the end of the pair's fit. An apparent second effect
-  /// may only have provided a better start for the first.
+  /// may only have provided a better start for the first effect.
   void try_alone(const std::vector<hypothesis::Judgement>& pairs) {
     if (pairs.empty() || !pairs.front().accepted) return;
     const hypothesis::Judgement& pair = pairs.front();
@@ -374,12 +374,12 @@ class Diagnoser {
     });
   }
   /// Judges the hypotheses within reach of the best one, and puts accepted ones first. Judges at least three
-  /// if none is accepted.
+  /// hypotheses if none is accepted.
   void judge_leading(std::vector<hypothesis::Judgement>& tried) const {
     if (tried.empty()) return;
     const int most = std::min(options_.leading, static_cast<int>(tried.size()));
     int leading = 0;
-    for (double best = tried.front().gain;;) {  // judging may reduce the evidence of the leading ones
+    for (double best = tried.front().gain;;) {  // judging may reduce the leading evidence
       const int judged = leading;
       while (leading < most &&
              tried[static_cast<std::size_t>(leading)].gain > best - thresholds::evidence.within_reach)
@@ -392,7 +392,7 @@ class Diagnoser {
     if (none && leading < kAtLeast) judge_some(tried, leading, std::min(kAtLeast, most));
     best_first(tried);
   }
-  /// Returns the highest evidence of the accepted hypotheses, or of all if none is accepted.
+  /// Returns the highest evidence of the accepted hypotheses, or of all judged ones if none is accepted.
   static double best_gain(std::span<const hypothesis::Judgement> judged) {
     const auto better = [](const hypothesis::Judgement& x, const hypothesis::Judgement& y) {
       return x.accepted != y.accepted ? y.accepted : x.gain < y.gain;

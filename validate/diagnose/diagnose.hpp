@@ -1,6 +1,7 @@
 #pragma once
-// Diagnosis of the physical effect that a model lacks. The missing input is inferred first, which shows the
-// side; then every hypothesis is fitted by itself and judged on events that its fit excludes.
+// Diagnosis of the physical effect that a model lacks. The missing input (torque or field voltage) is
+// inferred first and shows the side at fault. Every hypothesis is then fitted alone and judged on events that
+// its fit excludes.
 #include <functional>
 #include <optional>
 #include <string>
@@ -44,7 +45,7 @@ struct Diagnosis {
   /// set reduces the residual to noise.
   std::optional<fit::SparseSelection> wrong;
   double wrong_evidence =
-      0;  ///< evidence that only `wrong` is wrong, relative to a refit of all parameters [chi2]
+      0;  ///< evidence that only the parameters `wrong` are wrong, over a refit of all [chi2]
   reduced::FreeInput torque, field;  ///< each inferred without any added effect
   /// User-defined models, tried if no known effect explains the records.
   user_model_search::UserModelSearch user_models;

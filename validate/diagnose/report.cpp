@@ -67,8 +67,8 @@ ReportChannel channel_of(const Diagnosis& d, const fit::Fit* after, std::size_t 
   r.size = unit.name == "MW" || unit.name == "Mvar" ? d.base.plant.mva / event.record.base.mva : 1.0;
   r.measured = event.measured(output);
   const auto quiet = static_cast<std::size_t>(event.start.samples);
-  // The pre-event residual is the channel's noise, unless a fit biases the start to compensate for a missing
-  // effect. The lower of the two estimates is used.
+  // The pre-event residual is the channel's noise, unless a fit biases the initial state to compensate for a
+  // missing effect. The lower of the two estimates is used.
   const auto noise_of = [&](const fit::Fit& fit) {
     const auto residual = difference(fit.events[e].model[c], r.measured);
     return compare::estimate_noise(std::span(residual).first(quiet), unit.floor);

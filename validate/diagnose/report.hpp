@@ -15,7 +15,7 @@ namespace swingbank::validate::diagnose {
 struct ReportChannel {
   std::string name, unit;       ///< name of the channel; its unit
   double scale = 1, noise = 0;  ///< value of 1 pu [unit]; standard deviation of the noise [pu]
-  double size = 0;              ///< MVA of the machine for a power, else 1 [pu]
+  double size = 0;              ///< machine rating for P and Q, otherwise 1 [pu on the record's base]
   std::vector<double> measured, before, after;  ///< [pu]; `after` is empty without an addition
   compare::ErrorMap map_before, map_after;      ///< error maps without and with the addition
   double inside_before = 0, inside_after = 0;   ///< share of samples inside the 99 % band of the noise
@@ -26,7 +26,7 @@ struct ReportEvent {
   std::vector<compare::Window> windows;        ///< evaluation windows
   std::vector<ReportChannel> channels;         ///< measured channels
   double before = 0, after = 0;                ///< RMS of the whitened residual [noise standard deviations]
-  double unseen_before = 0, unseen_after = 0;  ///< the same from a fit without this event; NaN: not tried
+  double unseen_before = 0, unseen_after = 0;  ///< RMS from a fit without this event; NaN: not tried
 };
 /// Common content of JSON and page.
 struct ReportFigures {

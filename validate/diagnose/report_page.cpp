@@ -138,7 +138,7 @@ class DiagnosisPage {
     next_measurements();
     page_.add(report::End{});
   }
-  /// Adds the table of measurements that would separate the candidates; equal values share a row.
+  /// Adds the table of measurements that would separate the candidates. Equal values share a row.
   void next_measurements() {
     if (d_.would_decide.next.empty()) return;
     report::Table table{

@@ -14,7 +14,7 @@ namespace swingbank::validate::diagnose {
 namespace {
 
 constexpr std::size_t kHypothesesShown = 12;
-constexpr double kShownFrom = 0.01;  ///< minimum probability of a printed explanation, if the set is smaller
+constexpr double kShownFrom = 0.01;  ///< minimum probability printed outside the credible set
 
 void add_inputs(const Diagnosis& d, std::string& text) {
   if (d.torque.fit.events.empty() || d.field.fit.events.empty()) return;  // interrupted before the inference

@@ -137,7 +137,7 @@ FleetRow row_of(const diagnose::Diagnosis& d, const compare::Fitness& submitted)
   return row;
 }
 
-/// Reads the row of an earlier run. Returns whether it has the same inputs and its result files exist.
+/// Reads the row of an earlier run. Returns whether its inputs are the same and its result files exist.
 bool finished(const fs::path& folder, const std::string& inputs, FleetRow& row) {
   if (!fs::exists(folder / "diagnosis.json") || !fs::exists(folder / "report.html")) return false;
   try {

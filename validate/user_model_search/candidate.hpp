@@ -30,7 +30,7 @@ struct UserModelTrace {
   std::vector<double> t;  ///< samples [s]
   /// [signal][sample] [pu on the machine's base].
   std::array<std::vector<double>, kUserModelSignals.size()> signal;
-  /// First exit of V from its band [s]; NaN: none.
+  /// First time at which V is outside its band [s]; NaN: none.
   double trigger = std::numeric_limits<double>::quiet_NaN();
   double begin = 0;                  ///< start of the inferred input [s]
   double rest = 0;                   ///< active power (torque) or field voltage before the event [pu]
@@ -41,7 +41,7 @@ struct UserModelTrace {
 struct UserModelParameter {
   std::string name, unit;               ///< name and unit
   double value = 0, low = 0, high = 0;  ///< value and range [unit]
-  bool gain = false;                    ///< the model has no output if it is zero
+  bool gain = false;                    ///< whether the model has no output if this parameter is zero
   std::string meaning;                  ///< meaning for the TOML file
 };
 

@@ -28,7 +28,7 @@ class UserModelRegression {
   [[nodiscard]] Result fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const;
   /// Returns a time series at the knots: its mean over each knot's hat function.
   [[nodiscard]] Eigen::VectorXd at_knots(const TimeSeries& time_series) const;
-  /// The same for a function of trace and time.
+  /// Returns a function of trace and time at the knots, averaged in the same way.
   template <class F>
   [[nodiscard]] Eigen::VectorXd at_knots_of(F f) const {
     TimeSeries time_series(traces_.size());

@@ -24,7 +24,7 @@ constexpr std::size_t kFitted = 8;     ///< maximum number of candidates that ar
 constexpr std::size_t kPerSignal = 3;  ///< maximum number of fitted candidates of one signal
 constexpr std::size_t kJudged = 3;     ///< number of candidates that are judged on held-out events
 
-/// Returns whether `b` is `a` with additions: every word of `a`'s family is one of `b`'s.
+/// Returns whether `b` is `a` with additions: every word of `a`'s family is a word of `b`'s family.
 bool within(const UserModelCandidate& a, const UserModelCandidate& b) {
   const auto words = [](const std::string& family) {
     std::set<std::string> all;
@@ -53,7 +53,7 @@ std::vector<UserModelCandidate> leading(const std::vector<UserModelCandidate>& r
 }
 /// Returns the additional evidence that a candidate needs. A time of the record is meaningful only if all
 /// records start at the same time before the event. A candidate in proportion to the initial value is more
-/// specific than one that is not.
+/// specific than other candidates.
 double handicap(const UserModelCandidate& user_model) {
   return (user_model.signal == "time" ? thresholds::user_models.own_time.value : 0.0) +
          (user_model.family.ends_with("in proportion") ? thresholds::user_models.in_proportion.value : 0.0);

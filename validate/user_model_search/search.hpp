@@ -1,7 +1,7 @@
 #pragma once
 // Search for a user-defined model of the inferred input, if no known effect explains the records. Candidates
 // are ranked on the inferred input. The leading ones are fitted to the records and judged on held-out events,
-// as every hypothesis. Only a model that predicts unseen events is offered.
+// like every hypothesis. Only a model that predicts unseen events is offered.
 #include <memory>
 
 #include "validate/event/progress.hpp"
@@ -26,7 +26,7 @@ struct UserModelSearch {
   std::vector<UserModelTrace> traces;          ///< inferred input and signals of each event
   /// The best candidate of each kind, by regression on the inferred input.
   std::vector<UserModelCandidate> ranked;
-  /// Fitted to the records; accepted ones first, then in descending order of evidence.
+  /// Models that were fitted to the records: accepted ones first, then in descending order of evidence.
   std::vector<UserModelFinding> findings;
   double seconds = 0;  ///< processing time [s]
   /// Returns the best finding if it was accepted, else null.
@@ -46,8 +46,8 @@ struct Unexplained {
 };
 
 /// Searches for a model of the input with the lower reduced chi-square. Searches for the other input too if
-/// the first search finds none and the other input explains about as much. Returns no search if neither input
-/// explains most of the residual.
+/// the first search finds no model and the other input explains about as much. Returns no search if neither
+/// input explains most of the residual.
 UserModelSearch search_user_models(const Unexplained& case_, const event::Progress& report = {});
 
 /// Returns for example "None of the 31 known effects explains the records. A user-defined model does: ...";

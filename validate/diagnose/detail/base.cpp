@@ -58,8 +58,8 @@ std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
   return chi2;
 }
 
-/// Refits the model after the best change of a single parameter. This corrects a wrong limit that is never
-/// reached: its gradient is zero, so that a fit alone does not change it.
+/// Refits the model after the best change of a single parameter. Such a change can correct a wrong limit that
+/// is never reached. A fit alone does not change this limit, because its gradient is zero.
 fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
   constexpr std::array kMultiples = {0.3, 0.5, 0.7, 0.85, 1.2, 1.4, 2.0, 3.3};
   const auto free = fit::free_parameters(base_model.plant, base_model.prior_sd);

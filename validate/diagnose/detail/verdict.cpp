@@ -53,8 +53,9 @@ thresholds::Refitted left_by(const Diagnosis& d, double torque, double field) {
   return {d.base.reduced_chi2(), noise::slow_remainder(d.base.events, d.events),
           noise::strongest_line(d.base.events, d.events).explains, torque, field};
 }
-/// Returns " The residual oscillates at 0.37 Hz in P ..."; empty if another criterion finds more than noise,
-/// because any residual has a frequency at which it is strongest.
+/// Returns " The residual oscillates at 0.37 Hz in P ..." if this oscillation is the criterion that decides
+/// that the residual exceeds noise. Otherwise returns an empty text, because every residual has a strongest
+/// frequency.
 std::string line_sentence(const Diagnosis& d) {
   if (thresholds::judged_by_remainder(left_by(d, 0, 0), thresholds::adequacy.reduced_chi2).by !=
       thresholds::Criterion::line)
@@ -120,7 +121,7 @@ std::string with_probabilities(std::span<const hypothesis::Explanation> some) {
         fmt::format("{}{} ({})", text.empty() ? "" : ", ", e.name, report::probability_text(e.probability));
   return text;
 }
-/// Returns the same for a set. If the set contains many pairs, only the first ones are listed.
+/// Returns this text for a set of explanations. Of a set with many pairs, it lists only the first ones.
 std::string set_text(std::span<const hypothesis::Explanation> set, bool pairs) {
   if (!pairs || set.size() <= kPairsInSentence) return with_probabilities(set);
   return fmt::format("{} and {} more", with_probabilities(set.first(kPairsInSentence)),

@@ -12,7 +12,7 @@ namespace {
 
 /// Duration of every rise and fall [s]. An abrupt step would have a zero gradient with respect to its time.
 constexpr double kRise = 0.05;
-/// Absolute sine above which a square wave has its full amplitude, for the same reason.
+/// Absolute sine above which a square wave has its full amplitude. An abrupt edge would have a zero gradient.
 constexpr double kEdge = 0.1;
 /// Number of harmonics of a sawtooth; the omitted ones contain 4 % of its mean square.
 constexpr int kHarmonics = 16;

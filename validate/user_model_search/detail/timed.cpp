@@ -15,8 +15,9 @@ using Kind = UserModelShape::Kind;
 
 /// Time origin and scale of a candidate.
 struct Clock {
-  bool triggered = false;  ///< counted from the voltage deviation, otherwise from time zero of the record
-  bool scaled = false;     ///< in proportion to the initial active power or field voltage
+  bool triggered =
+      false;            ///< whether time counts from the voltage deviation, not from the record's time zero
+  bool scaled = false;  ///< whether the output is proportional to the initial active power or field voltage
 };
 
 void replace(std::string& text, const std::string& what, const std::string& with) {
@@ -102,8 +103,8 @@ class Timed {
     best = {begin, b, std::move(result)};
   }
 
-  /// Returns the candidate. `always`: it is active from the start of the inferred input, so the start time is
-  /// no parameter.
+  /// Returns the candidate. `always`: the candidate is active from the start of the inferred input, so the
+  /// start time is no parameter.
   [[nodiscard]] UserModelCandidate candidate(const UserModelShape& shape, const Clock& clock, const At& at,
                                              bool always) const {
     UserModelCandidate user_model;

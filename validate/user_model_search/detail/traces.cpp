@@ -19,7 +19,7 @@ double trigger_of(const event::FitEvent& e, double level) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Plays the event into the plant with the inferred input, with lenient steps if exact ones fail.
+/// Plays the event into the plant with the inferred input. The integration is lenient if the exact one fails.
 playin::Response play_event(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e,
                             const fit::EventState& state) {
   try {
