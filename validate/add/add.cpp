@@ -98,7 +98,8 @@ std::string own_values(const Addition& a) {
   return text;
 }
 
-/// Returns the reason why the effects of several that lack evidence are not accepted; empty if none lacks it.
+/// Returns the reason why those of several effects that lack evidence are not accepted; empty if all have
+/// enough.
 std::string without_evidence(const Addition& a) {
   std::string text;
   if (a.effects.size() < 2) return text;

@@ -1,6 +1,6 @@
 #pragma once
-// Addition of effects to a model: joint fit to the seen events, and comparison with the same structure
-// refitted without them, on unseen events too.
+// Addition of effects to a model: joint fit to the seen events, and comparison with the model refitted
+// without the effects, also on unseen events.
 #include <functional>
 
 #include "validate/calibrate/calibrate.hpp"
@@ -11,11 +11,12 @@ namespace swingbank::validate::add {
 /// Options of an addition.
 struct AddOptions {
   calibrate::CalibrateOptions calibrate = {};  ///< priors, held-out events, limits, progress
-  /// Called with each fit with the effect that is better than those before, from any thread. May be empty.
+  /// Called from any thread with each fit that includes the effect and is better than all earlier ones. May
+  /// be empty.
   std::function<void(const fit::Fit&)> reached = {};
 };
 
-/// Scores of one event: reduced chi-square of the given model, of the refit without the effect, and with it.
+/// Scores of one event: reduced chi-square of the given model, without the effect (refitted) and with it.
 struct AddedEvent {
   calibrate::EventScore score;  ///< before: given model; after: with the effect
   double refitted = 0;          ///< reduced chi-square without the effect, everything else refitted
@@ -27,23 +28,24 @@ struct AddedEvent {
 struct AddedEffect {
   std::string name;     ///< "SEXS"
   std::string what;     ///< "exciter SEXS (simplified excitation system)"
-  double evidence = 0;  ///< Addition::evidence over the other effects alone, refitted
+  double evidence = 0;  ///< evidence over the model with only the other effects, refitted
 };
 
 /// Result of an addition.
 struct Addition {
   hypothesis::Hypothesis hypothesis;  ///< the added effects with their free parameters
   std::vector<AddedEffect> effects;   ///< sorted by name
-  plant::PlantModel model;            ///< with the effect and the fitted values
+  plant::PlantModel model;            ///< model with the effects and the fitted values
   /// All free parameters, those of the effects first; from calibrate if the residual is noise.
   std::vector<fit::FittedParameter> parameters;
   int own = 0;                     ///< number of parameters of the effects
   std::vector<AddedEvent> events;  ///< scores of all events, in the order given
-  /// Difference of criterion(), without minus with all effects, over the seen events.
+  /// criterion() of the fit without the effects minus that of the fit with all effects, over the seen events.
   double evidence = 0;
-  /// The evidence of each effect exceeds thresholds::addition.strong, and no unseen event is worse with them.
+  /// Whether the evidence of each effect exceeds thresholds::addition.strong and no unseen event is worse
+  /// with them.
   bool earns = false;
-  bool adequate = false;           ///< the residual is noise in every event
+  bool adequate = false;           ///< whether the residual is noise in every event
   thresholds::Ruling ruling;       ///< the criterion that decided `adequate`
   std::string sentence;            ///< result in words
   noise::WhitenedEvents prepared;  ///< the events with their noise model
@@ -56,8 +58,8 @@ struct Addition {
 };
 
 /// Returns the hypothesis of that name, ignoring case and blanks. Throws InputError with the effects that can
-/// be added to this plant. The message states whether the slot is occupied, the effect acts at given times
-/// of one event only, or the records cannot show it.
+/// be added to this plant. The message states the reason: the slot is occupied, the effect acts at given
+/// times of one event only, or the records cannot show the effect.
 hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std::string& name,
                                        const std::vector<record::Record>& records);
 
@@ -66,7 +68,7 @@ std::vector<std::string> effect_names(const std::vector<std::string>& texts);
 
 /// Adds the effects of these names together and scores them. A text may hold several names: "FREQLAG + SEXS".
 /// The order of the names has no influence on the result. Throws InputError with every name that cannot be
-/// added, and as calibrate does.
+/// added, and in the same cases as calibrate().
 Addition add_effects(const plant::PlantModel& model, const std::vector<std::string>& names,
                      const std::vector<record::Record>& records, const AddOptions& options);
 
@@ -75,8 +77,8 @@ Addition add_effects(const plant::PlantModel& model, const std::vector<std::stri
 struct Removal {
   std::string effect;       ///< name of the removed effect
   plant::PlantModel model;  ///< model without it, refitted
-  /// Difference of criterion(), without minus with the effect. The effect is removed at addition.stays or
-  /// below.
+  /// criterion() of the fit without the effect minus that of the fit with it. The effect is removed if this
+  /// is at most addition.stays.
   double evidence = 0;
 };
 /// Refits the model without one control.
@@ -86,14 +88,14 @@ Removal try_without(const plant::PlantModel& model, std::size_t control, std::ve
 /// Sequence of additions and removals until the model was adequate or no effect helped.
 struct Completion {
   std::vector<Addition> added;   ///< in order of addition
-  std::vector<Removal> removed;  ///< later removed ones of `added`
+  std::vector<Removal> removed;  ///< effects of `added` that were removed later
   plant::PlantModel model;       ///< completed model
-  bool adequate = false;         ///< the residual is noise in every event
+  bool adequate = false;         ///< whether the residual is noise in every event
   std::string sentence;          ///< result in words
 };
 /// Diagnoses the model and adds what each diagnosis names, in at most `most` additions. After each addition,
-/// the effects added before must still earn their place. The held-out events are excluded from diagnoses and
-/// fits.
+/// the controls added before are removed if they lack evidence (try_without). The held-out events are
+/// excluded from diagnoses and fits.
 Completion add_until_adequate(const plant::PlantModel& model, const std::vector<record::Record>& records,
                               const AddOptions& options, int most = 4);
 

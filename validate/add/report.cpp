@@ -19,7 +19,7 @@ std::string verb(const Addition& a) {
   return fmt::format("{} {}", a.effects.size() > 1 ? "are" : "is", a.earns ? "accepted" : "not accepted");
 }
 
-/// Returns the criterion of this command for the effect, with that of diagnose for comparison.
+/// Returns the criterion of this command for the effect, with the criterion of `diagnose` for comparison.
 std::string judged_by(const Addition& a) {
   const bool any_unseen = std::ranges::any_of(a.events, [](const auto& e) { return !e.score.seen; });
   return fmt::format(
@@ -31,7 +31,7 @@ std::string judged_by(const Addition& a) {
       thresholds::evidence.accepted.value);
 }
 
-/// Returns the evidence of each of several effects; empty for one.
+/// Returns the evidence of each of several effects; empty for a single effect.
 std::string evidence_beside(const Addition& a) {
   if (a.effects.size() < 2) return "";
   std::string text = "Evidence of each effect beside the others:";

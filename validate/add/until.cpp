@@ -24,7 +24,7 @@ std::vector<std::string> next_effects(const diagnose::Diagnosis& d) {
   return {best->hypothesis.name};
 }
 
-/// Removes every added control that no longer earns its place.
+/// Removes every control added before whose evidence is no longer sufficient (Removal::evidence).
 void prune(Completion& c, const std::vector<record::Record>& records, const AddOptions& options) {
   std::vector<std::string> earlier;
   for (std::size_t a = 0; a + 1 < c.added.size(); ++a)

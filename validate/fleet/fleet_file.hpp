@@ -13,7 +13,7 @@ struct FleetPlant {
   std::string name;                  ///< letters, digits, - and _; also the name of its folder
   std::filesystem::path model;       ///< plant file
   std::vector<std::string> records;  ///< files and globs as written; relative ones are below `Fleet::folder`
-  double prior_sd = thresholds::parameters.prior_sd;  ///< as DiagnoseOptions::prior_sd
+  double prior_sd = thresholds::parameters.prior_sd;  ///< see DiagnoseOptions::prior_sd
   bool power_only = false;                            ///< whether to ignore recorded speed, Efd and Ifd
 };
 /// Contents of a fleet file.

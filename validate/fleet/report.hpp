@@ -13,7 +13,7 @@ namespace swingbank::validate::fleet {
 
 /// Sorts the rows, the worst first. The order of verdicts is unexplained, missing effect, adequate after
 /// refit but not fit for purpose as submitted, failed, adequate. Rows with the same verdict are sorted by the
-/// largest error of the submitted model [% of MVA], then by the normalised RMS of the refitted one, then by
+/// largest error of the submitted model [% of MVA], then by the normalised RMS of the refitted model, then by
 /// name.
 void sort_worst_first(std::vector<FleetRow>& rows);
 /// Returns the table of all plants: verdict, missing effect, largest error and fitness of the submitted

@@ -21,15 +21,15 @@ struct SubmittedError {
 struct FleetRow {
   std::string plant;
   std::string verdict;                          ///< diagnose::verdict_name(), or "failed"
-  std::vector<std::string> effects;             ///< as Diagnosis::effects
-  std::vector<std::string> equivalent;          ///< as Diagnosis::equivalent
+  std::vector<std::string> effects;             ///< see Diagnosis::effects
+  std::vector<std::string> equivalent;          ///< see Diagnosis::equivalent
   std::map<std::string, double> probabilities;  ///< of the explanations in the credible set
   std::string side;
   SubmittedError error;
-  double evidence = 0;  ///< 2 ln(Bayes factor) of the first effect; NaN: none was named
+  double evidence = 0;  ///< 2 ln(Bayes factor) of the first effect; NaN: no effect was named
   double left = 0;      ///< normalised RMS of the refitted model without an effect
   double unseen_before = 0, unseen_after = 0;  ///< normalised RMS over held-out events; NaN: not judged
-  double chance = 0;                           ///< bound of chance_of(); NaN: none was named
+  double chance = 0;                           ///< probability from chance_of(); NaN: no effect was named
   int events = 0;
   std::string sentence;  ///< verdict, or the problems, one per line
   std::string inputs;    ///< hash of all inputs of the row

@@ -71,7 +71,7 @@ std::string side_of(const diagnose::Diagnosis& d) {
   return d.field.evidence > d.torque.evidence ? "excitation" : "mechanical";
 }
 
-/// Returns the candidates with their probabilities: those of the verdict or, before it, from the evidence so
+/// Returns the candidates with their probabilities. Before the verdict, these follow from the evidence so
 /// far.
 json candidates_json(const diagnose::Diagnosis& d) {
   std::vector<hypothesis::Explanation> all = d.probabilities;

@@ -11,7 +11,8 @@ namespace swingbank::validate::live {
 /// - "progress": phase (event::Phase), item, done, total
 /// - "preliminary": verdict in words so far, candidates with their probabilities, inferred inputs of each
 /// event
-/// - "reached": reduced chi-square (chi2) and curves (events) [pu] of a fit that is better than those before
+/// - "reached": reduced chi-square (chi2) and curves (events) [pu] of a fit that is better than all earlier
+/// ones
 /// - "diagnosis": the result of a diagnosis
 /// - "end": the end of a diagnosis
 /// - "step": a new model, for step_of_fit()

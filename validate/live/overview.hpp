@@ -10,7 +10,7 @@ nlohmann::json setup_json(const Setup& setup, const Step& submitted);
 nlohmann::json step_json(const Setup& setup, const Step& step, int number);
 /// Returns the curves of one event as 32-bit floats: the times [s], then the samples of each channel [unit of
 /// the channel]. A channel has measured values, modelled values, and half widths of the 95 % band of the
-/// modelled ones (NaN: no band).
+/// modelled values (NaN: no band).
 std::vector<float> curves(const Step& step, std::size_t event);
 /// Returns a preview as 32-bit floats: RMS error, noise (both [unit]) and modelled samples of each channel.
 std::vector<float> preview_floats(const Preview& preview, const compare::EventComparison& event);

@@ -123,7 +123,7 @@ int Session::put(std::shared_ptr<const Step> added) {
   const std::lock_guard guard(lock_);
   std::size_t held = 0;
   for (const auto& s : steps_) held += s ? 1 : 0;
-  if (held >= most_) {  // the oldest manual change that no step builds on
+  if (held >= most_) {  // drop the oldest manual change that no step builds on
     const auto used = [&](int number) {
       return added->parent == number ||
              std::ranges::any_of(steps_, [&](const auto& s) { return s && s->parent == number; });

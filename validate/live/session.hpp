@@ -51,15 +51,15 @@ struct Step {
   calibrate::ResponseBands bands = {};     ///< 95 % bands of the response; empty: not a fitted model
   std::vector<std::string> held_out = {};  ///< names of records that the fit excluded
   double evidence = 0;       ///< 2 ln(Bayes factor) of an added effect over the refit without it
-  bool provisional = false;  ///< whether it is a first_step()
+  bool provisional = false;  ///< whether it comes from first_step()
   bool complete = false;     ///< whether the residual is noise in every bin
   std::shared_ptr<const compare::Played> played = {};  ///< comparison with all records
 };
 
 /// Returns the step of the submitted model, compared with all records.
 Step submitted_step(const Setup& setup);
-/// Returns the same with detected instead of fitted switching times. It takes a tenth of the time and is for
-/// the first screen.
+/// Returns this step with detected instead of fitted switching times, for the first screen. It takes a tenth
+/// of the time.
 Step first_step(const Setup& setup);
 
 /// Values of parameters by full name ("GENROU.H") [unit of the parameter].
@@ -92,7 +92,7 @@ class Session {
   int append(Step step);
   /// Stores the result of the diagnosis of a step, in words.
   void diagnosed(int step, std::string result);
-  /// Returns the result of the last diagnosis of a step; empty: there was none.
+  /// Returns the result of the last diagnosis of a step; empty if there was none.
   [[nodiscard]] std::string diagnosis_of(int step) const;
 
  private:
@@ -102,14 +102,15 @@ class Session {
   std::size_t most_;
   mutable std::mutex lock_;
   std::vector<std::shared_ptr<const Step>> steps_;
-  std::map<int, std::string> diagnoses_;  ///< by step
+  std::map<int, std::string> diagnoses_;  ///< result of the last diagnosis of each step
 };
 
 /// Simulated curves of one event while a slider moves.
 struct Preview {
   std::vector<compare::ReplayedChannel> channels;  ///< in the order of the channels of the step's comparison
 };
-/// Plays one event into a step's model with other values. Switching times and start are those of the step.
+/// Plays one event into a step's model with other values. Switching times and initial state are those of the
+/// step.
 Preview preview(const Step& step, std::size_t event, const Values& values);
 
 }  // namespace swingbank::validate::live

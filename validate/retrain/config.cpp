@@ -91,7 +91,7 @@ std::string attachment(const std::string& plant, const sim::plant::Block& block)
   return text;
 }
 
-/// Returns the block that the hypothesis added; nullptr: it only set parameters.
+/// Returns the block that the hypothesis added; nullptr if the hypothesis only set parameters.
 const sim::plant::Block* added_block(const add::Addition& added) {
   if (added.hypothesis.slot < 0) return nullptr;
   const auto slot = static_cast<sim::Slot>(added.hypothesis.slot);
@@ -222,7 +222,7 @@ std::array<RetrainSide, 2> write_retrain_configs(const fs::path& folder, const p
     side.name = k == 0 ? "without" : "with";
     side.folder = folder / side.name;
     side.dataset = side.folder / "dataset.toml";
-    side.experiment = side.folder / (side.name + ".toml");  // results are named after it
+    side.experiment = side.folder / (side.name + ".toml");  // results are named after this file
     side.data = side.folder / "data";
     side.results = side.folder / "results";
     toml::table dataset = base.table();

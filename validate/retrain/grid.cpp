@@ -114,7 +114,7 @@ std::string config_text(const plant::PlantModel& model, double range) {
   for (const auto& f : fit::free_parameters(plant, sim::plant::kMachineBlock, 0.2)) {
     const auto& record = sim::plant::parameter_record(plant, f.id);
     const double value = sim::plant::parameter_value(plant, f.id);
-    if (value < record.low || value > record.high) continue;  // outside the usual range: constant
+    if (value < record.low || value > record.high) continue;  // values outside the usual range stay constant
     const double one = value / range, other = value * range;
     text += fmt::format("{} = [{}, {}]\n", record.name, std::max(record.low, std::min(one, other)),
                         std::min(record.high, std::max(one, other)));

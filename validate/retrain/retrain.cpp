@@ -31,7 +31,7 @@ calibrate::Truth reference_of(const add::Addition& added, const calibrate::Truth
   return fitted;
 }
 
-/// Returns the parameters with a reference value, those of both networks first.
+/// Returns the parameters with a reference value, those that both networks estimate first.
 std::vector<RetrainedParameter> parameters_of(const std::array<calibrate::NetworkEstimate, 2>& estimates,
                                               const calibrate::Truth& reference) {
   std::vector<RetrainedParameter> all;

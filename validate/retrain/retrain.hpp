@@ -1,7 +1,7 @@
 #pragma once
-// Effect of an added model component on a trained network. One network is trained on a dataset of the plant
-// without the effect, another one on a dataset with the effect. Both networks estimate parameters from the
-// same records. This module needs no LibTorch: it writes the configs and compares the estimates.
+// Influence of an added model component on a trained network. One network is trained on a dataset of the
+// plant without the effect, another one on a dataset with the effect. Both networks estimate parameters from
+// the same records. This module needs no LibTorch: it writes the configs and compares the estimates.
 // jobs/retrain_run.hpp generates the datasets and trains the networks.
 #include <array>
 #include <filesystem>
@@ -37,17 +37,18 @@ struct RetrainSide {
 std::filesystem::path write_plant_grid(const std::filesystem::path& folder, const plant::PlantModel& model,
                                        const event::FitEvent& event, double range);
 
-/// Writes dataset and experiment configs of both networks below `folder`. The second has the effect of
-/// `added` at its fitted values, and varies the parameters that the records determine. The networks read P,
-/// Q, V and frequency for up to 8 s after the event. They also read speed and Ifd, if every record has them
-/// and `added` compared them. Throws InputError for a base config without a varied plant of this machine
+/// Writes dataset and experiment configs of both networks below `folder`. The second dataset has the effect
+/// of `added` at its fitted values, and varies the parameters that the records determine. The networks read
+/// P, Q, V and frequency for up to 8 s after the event. They also read speed and Ifd, if every record has
+/// them and `added` compared them. Throws InputError for a base config without a varied plant of this machine
 /// model, an addition that a dataset cannot express, or records that end too early.
 std::array<RetrainSide, 2> write_retrain_configs(const std::filesystem::path& folder,
                                                  const plant::PlantModel& before, const add::Addition& added,
                                                  const std::vector<record::Record>& records,
                                                  const RetrainOptions& options);
 
-/// Parameter that both networks estimate, or only the one with the effect. Arrays: without, with the effect.
+/// Parameter that both networks estimate, or only the network with the effect. Array index 0: network without
+/// the effect; 1: network with it.
 struct RetrainedParameter {
   std::string name, unit;       ///< "GENROU.H"
   double reference = 0;         ///< true value if known, otherwise fitted value
@@ -62,7 +63,8 @@ struct RetrainedEvent {
   bool seen = true;                    ///< false: held out
   double parameter_error[2] = {0, 0};  ///< RMS over the shared parameters [deviation]
   /// Reduced chi-square, and RMS error of P and Q [MW, Mvar], of the model with the estimates from the fitted
-  /// events. Switching times and start of the event are fitted. Infinite if that plant cannot be simulated.
+  /// events. Switching times and initial state of the event are fitted. Infinite if that plant cannot be
+  /// simulated.
   double reduced_chi2[2] = {0, 0}, rms[2] = {0, 0};
 };
 struct Retrained {

@@ -74,8 +74,8 @@ bool JointFit::run() {
   return measured;
 }
 
-/// Adds the effects one after the other, each time the one with the most evidence of those that remain. The
-/// parameters of those added before stay free, and the order of the names has no influence.
+/// Adds the effects one after the other, each time the remaining effect with the most evidence. The
+/// parameters of the effects added before stay free. The order of the names has no influence.
 void JointFit::search() {
   std::list<hypothesis::Judgement> added;
   std::list<hypothesis::BaseModel> bases = {base_model_};
@@ -98,8 +98,9 @@ void JointFit::search() {
   }
 }
 
-/// Refits the structure without each effect, if there are several, and searches for the effect again with the
-/// others in place: those that were added first were fitted to what the later ones explain.
+/// If there are several effects, refits the structure without each effect, and searches for this effect again
+/// with the others in place. The effects added first had also been fitted to the response that later effects
+/// explain.
 void JointFit::leave_out() {
   if (names_.size() < 2) return;
   for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -133,8 +134,8 @@ bool JointFit::measure_noise() {
   return true;
 }
 
-/// Frees one group of parameters that the default values of a single added effect leave at null values: the
-/// group with the most evidence. Returns false if no group has the evidence that an effect needs.
+/// Frees one group of parameters that a single added effect has at null values by default: the group with the
+/// most evidence. Returns false if no group has the evidence that an effect needs.
 bool JointFit::add_null_group() {
   if (names_.size() > 1) return false;
   auto groups = hypothesis::with_left_off(a_.hypothesis, a_.with.plant);
@@ -190,7 +191,7 @@ std::vector<hypothesis::Hypothesis> JointFit::addable(const sim::plant::PlantUnd
 }
 
 /// Returns the hypothesis with all of these effects at their start values. Effects that act only through an
-/// absent one are left out.
+/// absent effect are left out.
 hypothesis::Hypothesis JointFit::together(std::vector<std::string> names) const {
   hypothesis::Judgement all;
   all.hypothesis = nothing_added(base_model_);
@@ -223,7 +224,8 @@ fit::Fit JointFit::from_other(const hypothesis::Hypothesis& h, const fit::Fit& f
   return fit::better(j.fit, f) ? finished(j) : f;
 }
 
-/// Returns the fit completed with standard errors: fits of the search have none, or those of lenient steps.
+/// Returns the fit completed with standard errors. Fits of the search have none, or those of lenient
+/// integration.
 fit::Fit JointFit::finished(const hypothesis::Judgement& j) const {
   fit::Fit f =
       bench_.go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, base_model_.prior_sd), j.fit);

@@ -1,5 +1,5 @@
 #pragma once
-// Joint fit of the effects that are added, and refits of the model without all and without each of them.
+// Joint fit of the effects that are added, and refits of the model without all effects and without each one.
 #include <functional>
 #include <mutex>
 #include <optional>

@@ -15,8 +15,7 @@ using Kind = UserModelShape::Kind;
 
 /// Time origin and scale of a candidate.
 struct Clock {
-  bool triggered =
-      false;            ///< whether time counts from the voltage deviation, not from the record's time zero
+  bool triggered = false;  ///< whether time counts from the voltage deviation, else from record time 0
   bool scaled = false;  ///< whether the output is proportional to the initial active power or field voltage
 };
 
