@@ -75,8 +75,8 @@ int share_cases(const mpi::items::Ranks& ranks, const Options& o, std::size_t co
   return ranks.from_first(counts.failed == 0 ? 0 : 1);
 }
 
-/// Generates one case of the plan. If this throws an exception, returns a failed case, so that a long run
-/// continues.
+/// Generates one case of the plan. If the generation throws an exception, returns a failed case, so that a
+/// long run continues.
 std::string make_one(const Options& o, const blind::cases::BlindConfig& config,
                      const blind::cases::BlindSpec& spec, const std::string& name) {
   const fs::path folder = fs::path(o.out) / "cases" / name;

@@ -5,7 +5,7 @@
 #     --hours      duration of the whole run on this machine (default 2). The preset `nightly` is scaled so that the
 #                  tables take two thirds of it; the nightly tests, the blind test and the fuzz targets share the
 #                  remaining time
-#     --out        folder with one folder per nightly run (default out/nightly); `latest` points to the last one
+#     --out        folder with one folder per nightly run (default out/nightly); `latest` points to the last run
 #     --date       date of the run (default today); an interrupted run that is started again with its date continues
 #                  with its original sizes
 #     --preset     run this preset without scaling, however long it takes
@@ -13,8 +13,8 @@
 #                  has new seeds, and the runs show the random variation of a result
 #     --seeds      number of seeds to train with, from --seed on (default 3 if --hours is 4 or more, else 1)
 #     --keep-data  keep the simulated events (gigabytes; the same config generates the same bytes again)
-#     --tests      1: run the nightly tier of the tests (tests/run.sh --nightly), 0: skip it; default 1 if 70 % of the
-#                  remaining time suffices for the duration measured last (before the first measurement: 1.5 h)
+#     --tests      1: run the nightly tier of the tests (tests/run.sh --nightly), 0: skip it; default 1 if the tests, as
+#                  measured last, take at most 70 % of the remaining time (before the first measurement: 1.5 h)
 #     --fuzz       time for each fuzz target [s] (default: the remaining time; 0: none)
 #     --blind      number of cases of a blind test of the diagnosis, with the same seed (default: as many as the time
 #                  permits; 0: none)
@@ -118,8 +118,8 @@ tests_took() {
 # keep NAME...: saves these variables for a restart of this nightly run
 keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
 
-# Determines the sizes of the nightly run once. A restart uses them again; of its options, only --tests, --blind and
-# --fuzz have an effect.
+# Determines the sizes of the nightly run once. A restart uses them again; of the options of a restart, only --tests,
+# --blind and --fuzz have an effect.
 settle() {
   if [[ -s $night/sizes.conf ]]; then
     local asked_tests=$tests asked_blind=$blind asked_fuzz=$fuzz

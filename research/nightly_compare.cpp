@@ -46,7 +46,7 @@ struct Cell {
 struct Score {
   double sum = 0;  // sum of ln(MSE / baseline)
   std::size_t seeds = 0;
-  std::set<std::string> makers = {};  // software and kernels
+  std::set<std::string> makers = {};  // software versions and BLAS kernels
   [[nodiscard]] double mean() const { return sum / static_cast<double>(seeds); }
 };
 using NightlyRun = std::map<Cell, Score>;
@@ -56,7 +56,7 @@ struct Change {
   Cell cell;
   double latest = 0, before = 0, noise = 0;
   std::size_t runs = 0;
-  bool other_maker = false;  // other software or kernels than in the last run
+  bool other_maker = false;  // other software or BLAS kernels than in the last run
   [[nodiscard]] double limit() const {
     return 3.0 * noise * std::sqrt(1.0 + 1.57 / static_cast<double>(runs));
   }
@@ -121,7 +121,7 @@ NightlyRuns read_runs(const fs::path& folder) {
 /// Returns the changes of one run relative to all earlier runs, in the order of the cells.
 std::vector<Change> changes_of(const std::string& date, const NightlyRuns& runs) {
   std::map<Cell, std::vector<double>> before;
-  std::map<Cell, std::set<std::string>> makers;  // software and kernels of the last run
+  std::map<Cell, std::set<std::string>> makers;  // software and BLAS kernels of the last run
   for (const auto& [when, run] : runs) {
     if (when >= date) break;
     for (const auto& [cell, score] : run) {

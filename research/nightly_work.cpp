@@ -102,7 +102,7 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
     }
     part.runs += static_cast<std::size_t>(rows.folds);
     part.core_seconds += rows.folds * seconds;
-    if (!t.corrects.empty())  // the method whose estimates it corrects: all rows, once for all folds
+    if (!t.corrects.empty())  // adds the corrected method: all rows, once for all folds
       part.core_seconds += rows.all(t) * row(rate_of(rates, t.corrects), noise);
   }
   if (part.epochs > 0)

@@ -13,11 +13,11 @@ namespace swingbank::research {
 /// Time that a network needs on one core, from research/rates.toml.
 struct NetworkRate {
   double sample = 0.0;  ///< training time per sample [s]
-  /// Length of the time series with which `sample` was measured; the time is proportional to it. 0: the time
-  /// does not depend on it.
+  /// Length of the time series with which `sample` was measured; the time is proportional to the length. 0:
+  /// the time does not depend on the length.
   double length = 0.0;
   double row = 0.0;        ///< time per evaluated row, for estimators without training [s]
-  double noisy_row = 0.0;  ///< the same for rows with noise [s]
+  double noisy_row = 0.0;  ///< time per evaluated row with noise [s]
   double run = 0.0;        ///< fixed time per run: reading, fitting of scales, start [s]
 };
 /// Measured times of all parts of an experiment.

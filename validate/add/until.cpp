@@ -24,7 +24,7 @@ std::vector<std::string> next_effects(const diagnose::Diagnosis& d) {
   return {best->hypothesis.name};
 }
 
-/// Removes every control added before whose evidence is no longer sufficient (Removal::evidence).
+/// Removes every earlier added control whose evidence is now too low (thresholds::addition.stays).
 void prune(Completion& c, const std::vector<record::Record>& records, const AddOptions& options) {
   std::vector<std::string> earlier;
   for (std::size_t a = 0; a + 1 < c.added.size(); ++a)

@@ -14,14 +14,14 @@ namespace {
 
 using Scales = std::vector<std::optional<double>>;
 
-constexpr int kAttempts = 60;    ///< most systems drawn for a case
-constexpr int kEventTries = 12;  ///< most draws of one event
+constexpr int kAttempts = 60;    ///< maximum number of systems drawn for a case
+constexpr int kEventTries = 12;  ///< maximum number of draws of one event
 constexpr double kDip = 0.05;    ///< smallest voltage dip at the plant during a fault [pu]
 constexpr double kLeftByAFault =
     0.02;                            ///< lowest voltage during a fault; below it the angle is undefined [pu]
 constexpr double kUntripped = 0.02;  ///< largest speed deviation; above it a unit would trip [pu]
 constexpr double kSizeMet = 0.1;     ///< relative tolerance of the requested size
-constexpr int kSizeTries = 8;        ///< most simulations in the search for a size
+constexpr int kSizeTries = 8;        ///< maximum number of simulations in the search for a size
 
 constexpr double kHuge = 1e300;  ///< size of an effect that cannot be simulated
 

@@ -1,7 +1,7 @@
 #pragma once
 // Blind cases: records of a plant with an effect that its model file lacks. They are simulated independently
-// of the diagnosis: by IDA on the unreduced grid, at a sampling rate that no other integrator here uses, with
-// switching times between the samples. docs/reference/blind-test.md describes the files.
+// of the diagnosis: by IDA on the unreduced grid, at a sampling rate that no other integrator here uses, and
+// with switching times between the samples. docs/reference/blind-test.md describes the files.
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -35,7 +35,7 @@ struct BlindEvent {
 /// Hidden effect with its size.
 struct BlindTruth {
   const BlindKind* kind = nullptr;
-  double scale = 0;   ///< position on the path: 0 null value, 1 full
+  double scale = 0;   ///< position on the path; 0: null value, 1: full value
   double wanted = 0;  ///< requested size [noise]
   double left = 0;    ///< actual size: norm of the residual of P and Q in all events, after a linear refit of
                       ///< the machine's parameters, the switching times and the initial states [noise]

@@ -46,8 +46,8 @@ void check_blocks(Config& config, const std::string& key, const std::vector<std:
   }
 }
 
-/// Checks that all blocks have the slot `slot`: an effect of another slot would silently be placed in that
-/// slot.
+/// Checks that all blocks have the slot `slot`. Otherwise an effect of another slot would silently be placed
+/// in this slot.
 void check_slot(Config& config, const std::string& key, const std::vector<std::string>& texts,
                 sim::Slot slot) {
   check_blocks(config, key, texts);

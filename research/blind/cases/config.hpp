@@ -20,12 +20,12 @@ struct BlindPath {
 struct BlindKind {
   std::string name;
   std::string side;                         ///< subsystem: mechanical, excitation, machine, measurement, none
-  bool listed = true;                       ///< false: unlisted disturbance, which no hypothesis covers
-  bool drawn = true;                        ///< false: used only if requested by name
-  bool value = false;                       ///< true: nothing is missing, but values of the model are wrong
+  bool listed = true;                       ///< whether a hypothesis covers it; else unlisted disturbance
+  bool drawn = true;                        ///< whether it may be drawn; otherwise only requested by name
+  bool value = false;                       ///< whether only values of the model are wrong, nothing missing
   std::vector<std::string> base;            ///< controls in the model: "EFFECT[:PARAM=VALUE,...]"
   std::vector<std::string> hidden;          ///< effects that the model lacks, in the same form
-  std::vector<std::string> accepted_names;  ///< names that count as right; if `value`: all are needed
+  std::vector<std::string> accepted_names;  ///< names that count as right; all needed if `value`
   std::vector<BlindPath> path;
   bool logarithmic = false;  ///< whether the scale is linear in the parameters' logarithms
   /// Returns whether the effect is an instrument error.
@@ -58,7 +58,7 @@ struct BlindConditions {
   double dip_share = 0;          ///< share of cases whose last event is a frequency dip without switching
   double transformer_share = 0;  ///< share of cases recorded behind a transformer, which the model contains
   double second_unit_share = 0;  ///< share of cases recorded together with another unit of known model
-  std::vector<std::string> machines;  ///< effects, of which one replaces the machine of the case file
+  std::vector<std::string> machines;  ///< machine effects; one replaces the machine of the .dyr file
   std::vector<std::string> controls;  ///< controls in every case's model: "EFFECT[:PARAM=VALUE,...]"
   std::vector<std::string> exciters, governors;  ///< possible controls in the model of a rotating machine
 };

@@ -125,7 +125,7 @@ void settle_plan(const BlindPlan& plan, const BlindConfig& config, const std::fi
   if (!std::filesystem::exists(file)) {
     try {
       write_file(file, text);
-    } catch (const InputError&) {  // another part may have written the file meanwhile; it is compared below
+    } catch (const InputError&) {  // another part of the run may have written the file; see below
       if (!std::filesystem::exists(file)) throw;
     }
   }

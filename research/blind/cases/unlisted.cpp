@@ -84,7 +84,7 @@ struct RandomWalk : Unlisted {
   }
 };
 
-/// Backlash of the valve linkage: the torque follows beyond the dead band with a time constant of 5 ms.
+/// Backlash of the valve linkage: outside the dead band, torque follows with a time constant of 5 ms.
 struct Backlash : Unlisted {
   static constexpr std::string_view name = "ODD_BACKLASH", title = "hysteresis of the valve";
   static constexpr sim::Slot slot = sim::Slot::shaft;

@@ -15,10 +15,10 @@ namespace swingbank::research::blind::score {
 /// Truth and verdict of one case.
 struct ScoredCase {
   std::string name;
-  std::vector<std::string> kinds, sides;                 ///< of the hidden effects
+  std::vector<std::string> kinds, sides;                 ///< kinds and sides of the hidden effects
   std::vector<std::vector<std::string>> accepted_names;  ///< accepted names per hidden effect
   bool listed = true;                                    ///< whether hypotheses cover every hidden effect
-  bool value = false;                   ///< whether nothing is missing but a value of the model is wrong
+  bool value = false;                                    ///< whether only a value of the model is wrong
   double size = 0;                      ///< smallest size of the hidden effects [detection limits]
   bool channels = false;                ///< whether speed and Ifd are recorded
   std::vector<std::string> conditions;  ///< names of the recording conditions

@@ -25,8 +25,8 @@ struct Conditions {
 };
 
 /// Draws the conditions. A condition that [conditions] does not name keeps its value of [record] and consumes
-/// no random number. `instrument`: the hidden effect is an instrument error; no filter is then used. `dips`:
-/// the grid has governors, which a frequency dip needs.
+/// no random number. `instrument`: whether the hidden effect is an instrument error; no filter is then used.
+/// `dips`: whether the grid has governors, which a frequency dip needs.
 Conditions draw_conditions(const BlindConfig& config, bool instrument, bool dips, BlindDraw& draw);
 /// Returns the names of the conditions that differ from a clean record, for the truth: "30/s", "class M",
 /// "loads drift".

@@ -1,6 +1,6 @@
 #pragma once
-// Effects of blind cases: the compiled effects and the unlisted disturbances. No library contains the latter,
-// so that no hypothesis can name them.
+// Effects of blind cases: the compiled effects and the unlisted disturbances. No library contains the
+// unlisted disturbances, so that no hypothesis can name them.
 #include <span>
 #include <string>
 

@@ -12,7 +12,7 @@
 namespace swingbank::research::blind::cases {
 namespace {
 
-constexpr int kBlockTries = 200;  ///< most draws of one block
+constexpr int kBlockTries = 200;  ///< maximum number of draws of one block
 
 constexpr const char* kKnownTransformer = "STEPUP:X=0.1";
 constexpr const char* kKnownExciter = "SEXS:K=150";

@@ -70,8 +70,8 @@ BlindEvent draw_frequency_event(const BlindWorld& world, BlindDraw& draw);
 sim::reference::ReferenceRun simulate_fine(const sim::grid::Grid& grid, const std::vector<int>& plants,
                                            const BlindEvent& event, const BlindConfig& config);
 /// Returns the noise-free record of the instruments. Hidden measurement effects and the filter act at the
-/// fine rate; then every n-th sample is taken. P and Q are on the base kRecordMva. They include those of
-/// `other`, the second plant of the run, if it is not null.
+/// fine rate; then every n-th sample is taken. P and Q are on the base kRecordMva. If `other`, the second
+/// plant of the run, is not null, P and Q include its power.
 validate::record::Record measured(const sim::reference::ReferenceRun& fine, const sim::plant::Plant& plant,
                                   const BlindEvent& event, const Conditions& conditions, double frequency,
                                   std::uint64_t seed, const sim::plant::Plant* other = nullptr);
