@@ -13,9 +13,9 @@ namespace {
 
 /// Maximum number of tries per draw.
 constexpr std::uint64_t kRedraws = 20;
-/// Standard deviation of ln(value), in prior standard deviations. kIndependentWidth: for even draws.
-/// kGainWidth: for gains in odd draws, which are uncertain by decades. kOrderedWidth: for other parameters in
-/// odd draws.
+/// Standard deviation of ln(value), in prior standard deviations. kIndependentWidth: in draws with an even
+/// number. kGainWidth: of gains in odd draws, which are uncertain by decades. kOrderedWidth: of other
+/// parameters in odd draws.
 constexpr double kIndependentWidth = 1.2, kGainWidth = 2.0, kOrderedWidth = 0.8;
 /// Share of values that are reduced, and their largest reduction [decades]. The reduction factor is
 /// log-uniform.

@@ -146,7 +146,7 @@ class Search {
     return converged;
   }
   bool search(int iterations, int& done) {
-    // The summary reports a start that cannot be evaluated; the log line of Ceres is suppressed.
+    // The log line of Ceres is suppressed, because the summary reports a start that cannot be evaluated.
     static const bool quiet = (FLAGS_minloglevel = google::GLOG_FATAL, true);
     static_cast<void>(quiet);
     ceres::Solver::Options o;

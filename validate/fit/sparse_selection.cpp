@@ -130,8 +130,8 @@ class Selection {
                    : (p.value - p.start) / axis_unit(tested_.plant, p.where);
     }
   }
-  /// Prediction of the quadratic model for a free set, with the other parameters within the tolerance of a
-  /// correct value. `excess`: cost minus that of the full fit; `at`: location of the optimum; `occam`: log
+  /// Prediction of the quadratic model if a set is free and the other parameters are within the tolerance of
+  /// a correct value. `excess`: cost minus that of the full fit; `at`: location of the optimum; `occam`: log
   /// determinant of the posterior precision (Fit::occam).
   struct Prediction {
     double excess = 0, occam = 0;
@@ -165,7 +165,7 @@ class Selection {
       beams_.push_back(grown(beams_.back()));
     refitted_.resize(beams_.size());
   }
-  /// Returns the best sets with one more parameter.
+  /// Returns the best sets that have one parameter more than those of `beam`.
   [[nodiscard]] std::vector<Ranked> grown(const std::vector<Ranked>& beam) const {
     std::vector<Ranked> next;
     std::set<Set> known;
@@ -247,7 +247,8 @@ class Selection {
       r.cost = most + std::max(over * soft.excess / fixed.excess, std::min(over, soft.excess));
     return r;
   }
-  /// Returns the set of this size with the lowest cost, after refitting those with the lowest predicted cost.
+  /// Returns the set of this size with the lowest cost. Only sets with the lowest predicted cost are
+  /// refitted.
   const std::pair<Refit, Set>& best_of(std::size_t size) {
     auto& best = refitted_[size];
     if (best) return *best;

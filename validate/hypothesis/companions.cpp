@@ -13,8 +13,8 @@ using Eigen::Index;
 /// Change of a parameter for the finite difference of its column, relative to the effect's start value.
 constexpr double kChangeShare = 0.05;
 
-/// An effect and its columns: one for the whole effect and, if it has several parameters, one for each of
-/// them.
+/// An effect and its columns: one column for the whole effect and, if it has several parameters, one for each
+/// parameter.
 struct Companion {
   std::string name;
   std::vector<Index> columns;
@@ -65,7 +65,7 @@ void find_companions(const BaseModel& base_model, const Polish& polish, const Id
   struct Beside {
     Identified* h;
     std::vector<std::vector<double>> known = {};
-    double alone = 0, with_all = 0;  ///< costs alone and with all changes free
+    double alone = 0, with_all = 0;  ///< cost of the control alone, and with all changes free
   };
   std::vector<Beside> some;
   for (Identified& h : tried)

@@ -26,8 +26,8 @@ struct Decision {
 ///
 /// To compare two hypotheses, the response of one serves as the record. The other hypothesis is refitted to
 /// this record, linearised about its fit. The refit includes the information of the present records on its
-/// parameters. The remaining chi2 reduces its evidence. Returns no measurement for component records and
-/// staged tests.
+/// parameters. The remaining chi2 reduces the evidence of the refitted hypothesis. Returns no measurement for
+/// component records and staged tests.
 Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vector<Explanation>& all,
                            const noise::WhitenedEvents& events, double prior_sd, int threads);
 

@@ -22,7 +22,7 @@ using sim::Slot;
 constexpr std::uint64_t kGroupDraws = 32;  ///< number of draws of the parameters of a freed group
 /// Prior standard deviation of ln(value) of parameters at their null values.
 constexpr double kGroupPriorSd = 2.0;
-/// Prior standard deviation of ln(value) of an added effect's parameters; a change by it is a factor of e.
+/// Prior standard deviation of ln(value) of an added effect's parameters (a factor of e).
 constexpr double kAddedPriorSd = 1.0;
 /// Prior standard deviation of factors near 1, such as a transformer's tap ratio.
 constexpr double kFactorPriorSd = 0.1;
@@ -146,7 +146,7 @@ std::string_view stem(std::string_view name) {
   return name;
 }
 
-/// Start values of a parameter group (a curve), relative to the range of its parameters.
+/// Start values of a parameter group other than a dead band, relative to the range of its parameters.
 constexpr std::array kCurveStarts = {0.02, 0.1, 0.3, -0.02, -0.1};
 /// Start values of a dead band's edges, relative to their range of 1 pu. A dead band is a few hundredths of 1
 /// pu for voltage, and a thousandth of 1 pu for frequency. If the start value is wider than the signal, the

@@ -48,7 +48,8 @@ struct RecordContents {
 std::vector<Hypothesis> all_hypotheses(const sim::plant::PlantUnderTest& tested,
                                        const sim::library::EffectLibrary& library,
                                        const RecordContents& recorded = {});
-/// Returns the replacements of every control in a slot for one effect by every other effect of that slot.
+/// For every control in a slot that holds one effect, returns its replacements by all other effects of that
+/// slot.
 std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& tested,
                                          const sim::library::EffectLibrary& library);
 /// Returns extensions of `h` that also free a group of the added effect's parameters. The group is at null

@@ -123,7 +123,7 @@ class Identifying {
   [[nodiscard]] const Reduced& side_of(const Identified& h) const {
     return h.input() == InputKind::torque ? torque_ : field_;
   }
-  /// Returns whether the records need both inputs, so that an effect is missing on each side.
+  /// Returns whether the records need both inputs, which means that an effect is missing on each side.
   static bool other_is_free(const Reduced& side) {
     return side->inference().inputs.torque && side->inference().inputs.field;
   }
@@ -225,8 +225,8 @@ class Identifying {
     fit(some);
   }
   /// Fits the hypotheses whose fits are not complete. The goal of a block's fit depends on `others_` only if
-  /// the block's identified cost is higher than `others_`. A tighter goal might end a fit too early if it
-  /// converges slowly at first.
+  /// the block's identified cost is higher than `others_`. A tighter goal might end a slowly converging fit
+  /// too early.
   void fit(std::vector<Identified*> some) {
     std::erase_if(some, [](const Identified* h) { return h->polished; });
     const double least = least_fitted();

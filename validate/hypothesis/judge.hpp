@@ -10,7 +10,7 @@
 
 namespace swingbank::validate::hypothesis {
 
-/// Hold-out result of one event, from the model fitted to the other events with and without an effect.
+/// Result of one held-out event. The model was fitted to the other events, with and without an effect.
 struct HeldOut {
   std::string record;            ///< name of the record
   double before = 0, after = 0;  ///< reduced chi-square without and with the effect
@@ -29,7 +29,7 @@ struct Judgement {
   double gain = 0;        ///< 2 ln(Bayes factor): fit::criterion of the base model minus that of `fit`
   double size = 0;        ///< square root of the hypothesis's reduction of chi2 [noise standard deviations]
   std::vector<HeldOut> held_out;  ///< empty: not judged
-  bool fitted = true;             ///< false: not promising, so `fit` is that of the base model
+  bool fitted = true;             ///< whether it was fitted; an unpromising one has the base model's `fit`
   /// For a hypothesis that was identified but not fitted: its chi2 minus that of the best hypothesis.
   double behind = 0;
   /// For an identified control: the effect of the machine or of an instrument with which its chi2 is lowest.

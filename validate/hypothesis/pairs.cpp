@@ -64,7 +64,7 @@ std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& p
   const auto all = base_model.hypotheses();
   const auto first = std::ranges::find(all, pair.hypothesis.with, &Hypothesis::name),
              second = std::ranges::find(all, pair.hypothesis.name, &Hypothesis::name);
-  if (first == all.end() || second == all.end()) return {};  // one effect requires the other to be present
+  if (first == all.end() || second == all.end()) return {};  // one effect cannot be added without the other
   const Judgement stays = staying(*second, pair.fit);
   const BaseModel then = after(base_model, stays);
   std::vector<Judgement> competitors;

@@ -24,8 +24,8 @@ struct Explanation {
 /// least that of the best listed effect minus thresholds::evidence.accepted.
 std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
 
-/// Returns the size of the credible set: the number of leading explanations whose probabilities sum to
-/// thresholds::posterior.set or more.
+/// Returns the size of the credible set: the smallest number of leading explanations whose probabilities sum
+/// to thresholds::posterior.set or more.
 std::size_t credible(const std::vector<Explanation>& all);
 
 /// Returns the evidence by which an explanation must be worse than a better one to be negligible

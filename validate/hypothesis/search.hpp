@@ -97,12 +97,12 @@ std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& p
                                  const std::vector<Judgement>& alone);
 /// Fits a candidate of exchanges() or crossed() from its start. Does nothing if the candidate has no start.
 void try_begun(const BaseModel& base_model, Judgement& j);
-/// A new pair: one effect from each of two pairs in which they had other partners.
+/// A new pair that consists of one effect from each of two tried pairs.
 struct Cross {
   std::string joins;          ///< name of the effect taken from the better pair
   const Judgement* joins_in;  ///< the better pair, whose machine parameters are used
-  std::string stays;          ///< name of the effect taken from the other pair
-  const Judgement* stays_in;  ///< the other pair
+  std::string stays;          ///< name of the effect taken from the worse pair
+  const Judgement* stays_in;  ///< the worse pair
   /// Evidence of both pairs minus that of the pair of their other effects. This assumes that reductions of
   /// chi2 add up.
   double expected;

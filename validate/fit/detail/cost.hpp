@@ -62,7 +62,8 @@ class GaussianPrior : public ceres::CostFunction {
 
 /// Penalty that enforces the physical orderings of a machine's parameters (Xd > X'd > ...). It acts if the
 /// gap between two parameters is below kMargin, or below their gap at the start if that is smaller. A start
-/// that violates an ordering is drawn back to it, unless the violation may be intended
+/// that violates an ordering is drawn back towards the ordering, unless the violation may be intended
+/// (Ordering::may_be_meant).
 /// (Ordering::may_be_meant).
 class Walls : public ceres::CostFunction {
  public:
@@ -118,7 +119,7 @@ class Walls : public ceres::CostFunction {
   static constexpr double kSteepness = 0.001;  ///< shortfall of the gap that costs one reduced chi-square
   struct Wall {
     std::array<int, 2> parameters, axes;  ///< greater, smaller; axis -1: that parameter is fixed
-    double foot;                          ///< the same limit for this pair, lower if the start's gap is
+    double foot;                          ///< kMargin, or the gap at the start if that is smaller
   };
   static double gap(const sim::plant::Block& b, const sim::plant::Ordering& o) {
     return std::log(b.p[static_cast<std::size_t>(o.greater)] / b.p[static_cast<std::size_t>(o.smaller)]);

@@ -10,8 +10,8 @@
 namespace swingbank::validate::fit::fitting {
 namespace {
 
-/// Limit of a step's prediction error, relative to the change of the residuals, for correcting sensitivities.
-/// A larger error is attributed to nonlinearity of the response, not to the sensitivities.
+/// Largest prediction error of a step by which sensitivities are corrected, relative to the change of the
+/// residuals. A larger error is attributed to nonlinearity of the response, not to the sensitivities.
 constexpr double kOffAtMost = 0.2;
 /// Sensitivities are reused, at most kGoOn times in a row, if their prediction error of the last step is at
 /// most this share of the residuals' change.
