@@ -22,11 +22,11 @@ struct CalibrateOptions {
   double prior_sd = thresholds::parameters.prior_sd;  ///< relative prior standard deviation of the parameters
   int draws = 24;  ///< number of random parameter sets; not used if the fit from the closed form is adequate
   int starts = 2;  ///< number of the best draws that are refined
-  std::uint64_t seed = 1;                     ///< seed of the random draws
-  std::vector<std::string> held_out;          ///< record names (or their numbers, from 1) left out of the fit
-  std::vector<std::string> fixed;             ///< names of fixed parameters, e.g. "GENROU.Xl"
-  std::vector<GivenStart> given;              ///< starts in addition to the model's own values and the draws
-  bool only_given = false;                    ///< use only `given` as starts and simulate no further events
+  std::uint64_t seed = 1;             ///< seed of the random draws
+  std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
+  std::vector<std::string> fixed;     ///< names of fixed parameters, e.g. "GENROU.Xl"
+  std::vector<GivenStart> given;      ///< starts in addition to the model's own values and the draws
+  bool only_given = false;            ///< whether to use only `given` as starts, without further events
   std::vector<fit::FreeParameter> free = {};  ///< free parameters with priors; empty: chosen_parameters()
   /// Smallest limit of the reduced chi-square. It allows for interpolation errors of the played-in voltage.
   double adequate = thresholds::adequacy.reduced_chi2;
@@ -34,8 +34,8 @@ struct CalibrateOptions {
   event::Progress progress = {};       ///< recipient of progress messages; empty: none
 };
 
-/// Errors of one channel of one event in the fit, with the event's own switching times and start fitted.
-/// Commands show the errors of compare::error_table() instead.
+/// Errors of one channel of one event in the fit, with the event's own switching times and initial state
+/// fitted. Commands show the errors of compare::error_table() instead.
 struct ChannelScore {
   playin::Output channel;                ///< output that is compared
   std::string unit;                      ///< unit of the errors
@@ -46,7 +46,7 @@ struct ChannelScore {
 /// Reduced chi-square of one event before and after the calibration.
 struct EventScore {
   std::string record;            ///< name of the record
-  bool seen = true;              ///< false: held out; only the event's own state was fitted
+  bool seen = true;              ///< whether the fit used it; of a held-out event, only the state was fitted
   double before = 0, after = 0;  ///< reduced chi-square
   double limit = 0;              ///< limit of the reduced chi-square
   /// Part of `limit` beyond the limit of noise alone. It covers the uncertainty of the fitted parameters in a
@@ -85,7 +85,7 @@ struct CalibratedParameter {
   fit::FittedParameter fit;    ///< error and interval include the widening for coloured residuals
   double curvature_error = 0;  ///< standard error from the curvature alone, for white noise [unit]
   double shift = 0;            ///< correction applied for noise of the played-in voltage [unit]
-  int best_candidate = -1;     ///< candidate that reduces the error most; -1: none reduces it by a fifth
+  int best_candidate = -1;     ///< index of the candidate that reduces the error most; -1: none by a fifth
   double narrowed = 1;         ///< standard error with that candidate / without it
 };
 
@@ -141,11 +141,11 @@ std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant
 /// counted from 1. Throws InputError: no record, unknown names, or every record held out.
 std::vector<bool> held_out_events(const std::vector<record::Record>& records,
                                   const std::vector<std::string>& names);
-/// Returns the records that are not held out. Throws InputError as held_out_events().
+/// Returns the records that are not held out. Throws InputError in the same cases as held_out_events().
 std::vector<record::Record> seen_records(const std::vector<record::Record>& records,
                                          const std::vector<std::string>& held_out);
 
-/// Returns the number of pre-event samples over all events, less one per event.
+/// Returns the number of pre-event samples over all events, minus one per event.
 int pre_event_samples(const noise::WhitenedEvents& events);
 
 /// Returns the limit of an event's reduced chi-square that noise alone exceeds with probability 0.001, at

@@ -24,7 +24,8 @@ struct CurveFitOptions {
 struct CurveFit {
   plant::PlantModel model;  ///< with the fitted values
   /// Fitted parameters. Their intervals come from \f$ s^2 (J^T J)^{-1} \f$ with \f$ s^2 = RSS / (values -
-  /// parameters) \f$, as parameter derivation tools report them; infinite where \f$ J^T J \f$ is singular.
+  /// parameters) \f$, as parameter derivation tools report them. They are infinite where \f$ J^T J \f$ is
+  /// singular.
   std::vector<fit::FittedParameter> parameters;
   std::vector<EventScore> events;  ///< switching times and initial states are not fitted
   double rms_before = 0,
@@ -32,7 +33,7 @@ struct CurveFit {
   double before = 0, after = 0;  ///< reduced chi-square of the fitted events before and after the fit
   double limit = 0;              ///< largest limit of the reduced chi-square of these events
   int iterations = 0;            ///< number of iterations
-  bool converged = false, adequate = false;  ///< adequate: every event within its limit
+  bool converged = false, adequate = false;  ///< adequate: whether every event is within its limit
   std::string sentence;                      ///< result in words
   double seconds = 0;                        ///< elapsed time [s]
 };

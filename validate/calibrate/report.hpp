@@ -13,7 +13,7 @@ namespace swingbank::validate::calibrate {
 report::Table parameter_table(const Calibration& c);
 /// Returns the use of an event: "fit" or "verification".
 std::string use_name(const EventScore& e);
-/// Table of events: use, reduced chi-square before and after, and its limit.
+/// Table of events: use, reduced chi-square before and after the calibration, and its limit.
 report::Table event_table(const std::vector<EventScore>& events);
 
 /// Verdict, tables, parameters that are not identified, and events that would identify them.

@@ -20,9 +20,9 @@ using Truth = std::map<std::string, double>;
 /// the file is neither of them, or has another MVA base than the model.
 Truth read_truth(const std::filesystem::path& file, const plant::PlantModel& model);
 
-/// Estimate by one method, with the reduced chi-square of every event. Switching times and start of each
-/// event are fitted for each method, so that methods differ in parameters only. The separate report of the
-/// curve fit does not fit them.
+/// Estimate by one method, with the reduced chi-square of every event. Switching times and initial state of
+/// each event are fitted for each method, so that methods differ in parameters only. The separate report of
+/// the curve fit does not fit them.
 struct Way {
   std::string name;  ///< name of the method
   /// Estimate of one parameter.
@@ -31,7 +31,7 @@ struct Way {
     double value = 0, low = 0, high = 0;  ///< estimate and 95 % interval [unit]
   };
   std::vector<Value> values;       ///< estimates of all parameters
-  std::vector<EventScore> events;  ///< scores of all events; `after` is that with `values`
+  std::vector<EventScore> events;  ///< scores of all events; `after`: with `values`
 };
 /// The model's own values, without intervals.
 Way way_of_model(const Calibration& c);

@@ -24,7 +24,7 @@ WrongParameters wrong_parameters(const plant::PlantModel& model, std::vector<rec
 }
 
 namespace {
-/// "KPR and KIR together explain the records as well as KPM", for all alternatives.
+/// Returns " KPR and KIR together explain the records as well as KPM." for each alternative.
 std::string alternatives_text(const fit::SparseSelection& found) {
   std::string text;
   for (const auto& a : found.alternatives)

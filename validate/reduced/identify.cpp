@@ -16,7 +16,8 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 constexpr double kDifference = 1e-3;  ///< finite difference on an axis, for Jacobians
-/// Maximum number of rounds of draws. They end earlier if the acting draws reach half the size of a round.
+/// Maximum number of rounds of draws. They end earlier if the acting draws (those with a response) reach half
+/// the size of a round.
 constexpr int kRoundsOfDraws = 20;
 /// Share of acting draws below which differential evolution improves them.
 constexpr double kRare = 0.1;

@@ -16,7 +16,7 @@ using Kind = playin::SensitivityParameter::Kind;
 using detail::Normal, detail::Point;
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-/// Maximum number of intensities of the inputs' random walk, besides the prior intensity.
+/// Maximum number of intensities of the inputs' random walk that are tried besides the prior intensity.
 constexpr int kIntensities = 5;
 constexpr double kSameIntensity =
     0.7;  ///< difference of logarithms below which two intensities count as equal

@@ -75,7 +75,7 @@ Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind);
 /// Returns the prior standard deviation of each variable of an event's state, in its units. For a switching
 /// time it is the uncertainty of that time.
 std::vector<double> own_priors(const event::FitEvent& event);
-/// Clamps the switching times of an event's state to their uncertainties.
+/// Clamps the switching times of an event's state to within their uncertainties.
 void keep_in_range(const event::FitEvent& event, Eigen::VectorXd& state);
 
 inline constexpr int kInferenceSteps = 5;  ///< maximum number of Gauss-Newton steps of an inference
@@ -91,13 +91,13 @@ struct SmoothInference {
 };
 /// Computes both inferences. `from`: a fit of the tested plant without inputs, near which the residuals are
 /// almost linear in the inputs. The first inference is then the linearisation at this fit. If `from` is null,
-/// the first inference starts at the submitted values. Throws as infer().
+/// the first inference starts at the submitted values. Throws InputError in the same cases as infer().
 SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                              const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
                              const fit::Fit* from);
-/// Linearises about `plant` without any step, at the given event states and with Jacobians for the requested
-/// inputs, which are zero. `plant` is the tested plant, or has a block added or replaced. Throws InputError
-/// if it cannot be simulated.
+/// Linearises about `plant` without any step, at the given event states. The requested inputs are zero, and
+/// their Jacobians are computed. `plant` is the tested plant, or has a block added or replaced. Throws
+/// InputError if it cannot be simulated.
 Inference linear_about(const sim::plant::Plant& plant, const sim::plant::PlantUnderTest& tested,
                        const noise::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                        const std::vector<event::EventState>& states, Inputs inputs, int threads);

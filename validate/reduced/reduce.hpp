@@ -23,7 +23,7 @@ class Reduction {
   [[nodiscard]] const Inference& inference() const { return inference_; }
   /// Returns the conventions of the plant.
   [[nodiscard]] const sim::Conventions& conventions() const { return conventions_; }
-  /// One event.
+  /// One reduced event.
   struct Event {
     playin::OpenLoop loop;  ///< open loop of the plant's controls
     /// Weights of the mean over each knot's hat function: [knot][time point].

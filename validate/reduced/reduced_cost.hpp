@@ -1,12 +1,13 @@
 #pragma once
-// Cost of a change of the plant near a point at which its residuals were linearised, with all other unknowns
-// eliminated. The response u of a trial is the change that its block causes. All other unknowns d are linear:
+// Cost of a change of the plant near a point at which the plant's residuals were linearised, with all other
+// unknowns eliminated. The response u of a trial is the change that its block causes. All other unknowns d
+// are linear:
 //   |r + T d + L g u|^2 + |(offset + d) / prior_sd|^2
 #include "validate/reduced/infer.hpp"
 
 namespace swingbank::validate::reduced {
 
-/// Cost of a response u, minimised over the changes d of all plant parameters except the gain's:
+/// Cost of a response u, minimised over the changes d of all plant parameters except the gain parameter:
 ///
 /// \f[ J(u) = \min_d |r + T d + L g u|^2 + |(o + d) / \sigma|^2 \f]
 ///
@@ -38,7 +39,8 @@ class ReducedCost {
   /// Computes the quadratic model of the cost of one response. `gain`: change of the gain's parameter.
   [[nodiscard]] Quadratic quadratic(const Eigen::VectorXd& response, double gain,
                                     const Eigen::MatrixXd& jacobian) const;
-  /// Returns the changes of the plant parameters that minimise the cost of a response, without add_changes().
+  /// Returns the changes of the plant parameters that minimise the cost of a response, without those of
+  /// add_changes().
   [[nodiscard]] Eigen::VectorXd plant_of(const Eigen::VectorXd& response, double gain) const;
   /// The plant parameter that scales the response, and its exponent.
   struct Gain {

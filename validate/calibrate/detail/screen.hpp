@@ -12,8 +12,8 @@ class Screen {
  public:
   Screen(const sim::plant::Plant& plant, const std::vector<fit::FreeParameter>& free, std::uint64_t seed)
       : plant_(plant), free_(free), seed_(seed) {}
-  /// Returns set k. A draw is repeated until its values are physically possible; after 100 attempts the
-  /// model's own values are returned.
+  /// Returns parameter set k. A draw is repeated until its values are physically possible; after 100 attempts
+  /// the model's own values are returned.
   [[nodiscard]] std::vector<double> draw(std::uint64_t k) const;
   [[nodiscard]] sim::plant::Plant with(const std::vector<double>& values) const;
   [[nodiscard]] std::vector<double> own() const;
