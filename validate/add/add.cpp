@@ -98,8 +98,7 @@ std::string own_values(const Addition& a) {
   return text;
 }
 
-/// Returns the reason why those of several effects that lack evidence are not accepted; empty if all have
-/// enough.
+/// Names those of several effects that are not accepted for lack of evidence. Empty if there are none.
 std::string without_evidence(const Addition& a) {
   std::string text;
   if (a.effects.size() < 2) return text;

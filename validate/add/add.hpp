@@ -36,7 +36,8 @@ struct Addition {
   hypothesis::Hypothesis hypothesis;  ///< the added effects with their free parameters
   std::vector<AddedEffect> effects;   ///< sorted by name
   plant::PlantModel model;            ///< model with the effects and the fitted values
-  /// All free parameters, those of the effects first; from calibrate if the residual is noise.
+  /// All free parameters, those of the effects first. They have the corrections of calibrate() if the
+  /// residual is noise.
   std::vector<fit::FittedParameter> parameters;
   int own = 0;                     ///< number of parameters of the effects
   std::vector<AddedEvent> events;  ///< scores of all events, in the order given
@@ -72,8 +73,8 @@ std::vector<std::string> effect_names(const std::vector<std::string>& texts);
 Addition add_effects(const plant::PlantModel& model, const std::vector<std::string>& names,
                      const std::vector<record::Record>& records, const AddOptions& options);
 
-/// Result of the removal of one control (index into Plant::controls): its evidence with everything else
-/// refitted, and the model without it.
+/// Result of the removal of one control (index into Plant::controls): the control's evidence with everything
+/// else refitted, and the model without the control.
 struct Removal {
   std::string effect;       ///< name of the removed effect
   plant::PlantModel model;  ///< model without it, refitted

@@ -58,7 +58,7 @@ class Diagnoser {
 
  private:
   [[nodiscard]] bool stopped() const { return interruption_asked() || (options_.stop && options_.stop()); }
-  /// Saves the state for an interruption; all fits in it have the same noise model.
+  /// Saves the state for an interruption. All fits of this state have the same noise model.
   void keep() { kept_ = result_; }
   /// Fits the given model, infers the missing inputs and tries every hypothesis. Returns false if the user
   /// has stopped.
@@ -183,7 +183,8 @@ class Diagnoser {
   }
 
   /// Judges the leading hypotheses. Then tries pairs with the companion effect (beside_companion). If no pair
-  /// is accepted, tries pairs with the best single hypothesis or, if that is not accepted, with the best two.
+  /// is accepted, tries pairs with the best single hypothesis or, if that is not accepted, with the best two
+  /// hypotheses.
   void search() {
     const hypothesis::BaseModel base_model = present_model();
     judge_leading(result_.ranked);

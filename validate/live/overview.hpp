@@ -15,7 +15,8 @@ std::vector<float> curves(const Step& step, std::size_t event);
 /// Returns a preview as 32-bit floats: RMS error, noise (both [unit]) and modelled samples of each channel.
 std::vector<float> preview_floats(const Preview& preview, const compare::EventComparison& event);
 /// Returns the responses with a parameter decreased and increased by 10 % of its value: for each channel, the
-/// samples of both [unit of the channel]. A parameter at zero is changed by 10 % of its usual range.
+/// samples of both responses [unit of the channel]. A parameter at zero is changed by 10 % of its usual
+/// range.
 std::vector<float> ribbon(const Step& step, std::size_t event, const Values& values, const std::string& name);
 /// Returns the effects that can be added to a step's model, in the order of the library.
 nlohmann::json effects_json(const Step& step);

@@ -81,12 +81,12 @@ class Session {
   [[nodiscard]] std::shared_ptr<const Step> step(int number) const;
   /// Returns the number of steps.
   [[nodiscard]] int steps() const;
-  /// Returns the numbers of the steps that are kept, in order.
+  /// Returns the numbers of the steps that are kept, in ascending order.
   [[nodiscard]] std::vector<int> kept() const;
   /// Replaces the first step, which was provisional.
   void compared(std::shared_ptr<const Step> submitted);
   /// Changes values of the model of step `from`, compares it with all records, and appends it as a step.
-  /// Returns the number of the new step; `from` if no value changes.
+  /// Returns the number of the new step, or `from` if no value changes.
   int change(int from, const Values& values);
   /// Appends the model of a fit, compared with all records. Returns the number of the step.
   int append(Step step);

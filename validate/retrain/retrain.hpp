@@ -68,7 +68,7 @@ struct RetrainedEvent {
   double reduced_chi2[2] = {0, 0}, rms[2] = {0, 0};
 };
 struct Retrained {
-  bool truth = false;  ///< the reference values are true values
+  bool truth = false;  ///< whether the reference values are true values
   std::vector<RetrainedParameter> parameters;
   std::vector<RetrainedEvent> events;
   double error[2] = {0, 0}, middle = 0;  ///< RMS over shared parameters and held-out events [deviation]

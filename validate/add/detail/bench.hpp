@@ -9,7 +9,7 @@ namespace swingbank::validate::add {
 /// Prepared events of an addition, and the subset that is not held out.
 class Bench {
  public:
-  /// Prepares the events. Throws InputError as calibrate does.
+  /// Prepares the events. Throws InputError in the same cases as calibrate().
   Bench(const plant::PlantModel& model, std::vector<record::Record> records,
         const calibrate::CalibrateOptions& options);
   [[nodiscard]] const noise::WhitenedEvents& all() const { return all_; }
@@ -32,7 +32,7 @@ class Bench {
   void keep_seen();
 
   const calibrate::CalibrateOptions& options_;
-  std::vector<bool> out_;  ///< one flag per event: held out
+  std::vector<bool> out_;  ///< whether each event is held out
   noise::WhitenedEvents all_, seen_;
 };
 

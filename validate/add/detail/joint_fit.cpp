@@ -122,7 +122,7 @@ void JointFit::leave_out() {
   for (LeftOut& l : left_out_) l.fit = from_other(l.others, l.fit, a_.with);
 }
 
-/// Measures the noise again through the fit with the effects, if it is close, and repeats all fits.
+/// If the fit with the effects is close, measures the noise again through this fit and repeats all fits.
 bool JointFit::measure_noise() {
   if (!bench_.measure_noise(a_.with, a_.hypothesis.conventions)) return false;
   const auto repeat = [&](const hypothesis::Hypothesis& h, fit::Fit& f) {

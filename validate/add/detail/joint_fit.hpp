@@ -30,7 +30,7 @@ class JointFit {
   /// The structure without one effect, refitted.
   struct LeftOut {
     std::size_t effect;             ///< index into Addition::effects
-    hypothesis::Hypothesis others;  ///< all effects that can act without it
+    hypothesis::Hypothesis others;  ///< all effects that can act without this effect
     fit::Fit fit;
   };
 

@@ -50,8 +50,8 @@ sim::plant::Plant stepped(const sim::plant::Plant& plant, const std::vector<fit:
 }
 
 Eigen::VectorXd Secants::step(const Eigen::VectorXd& plain) {
-  // No secant update if the predicted step's projection on the last step is below this share of the latter
-  // squared.
+  // No secant update if the product of the last and the predicted step is below this share of the squared
+  // last step.
   constexpr double kMinSecantShare = 1e-3;
   if (taken_.size() > 0) {
     const Eigen::VectorXd done = inverse_ * (plain_ - plain);
