@@ -32,8 +32,8 @@ std::string place(const fs::path& name, const toml::source_position& p) {
 }
 
 std::string list(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, ", ")); }
-/// Returns `remedy`, then `words`, then the word of `free` nearest to `word`: "use one of: GENCLS, GENROU;
-/// did you mean GENROU?".
+/// Returns `remedy`, the list `words`, and the entry of `free` that is nearest to `word`: "use one of:
+/// GENCLS, GENROU; did you mean GENROU?".
 std::string choose_from(std::string_view word, const std::vector<std::string>& words,
                         const std::vector<std::string>& free, const std::string& remedy) {
   const std::string nearest = nearest_word(word, free);

@@ -58,13 +58,13 @@ class Config {
   /// range applies to each number of a list.
   template <class T>
   T require(const std::string& key, const Range& range = {});
-  /// Returns the value of a key, or `otherwise` if the key is missing or its value is wrong; the latter is
-  /// recorded as a problem.
+  /// Returns the value of a key, or `otherwise` if the key is missing or its value is wrong. Records a wrong
+  /// value as a problem.
   template <class T>
   T optional(const std::string& key, T otherwise, const Range& range = {});
   /// Returns a text that must be one of `words`.
   std::string choice(const std::string& key, const std::vector<std::string>& words, const Range& about = {});
-  /// The same, with `otherwise` if the key is missing.
+  /// Returns a text that must be one of `words`, or `otherwise` if the key is missing.
   std::string choice(const std::string& key, const std::vector<std::string>& words,
                      const std::string& otherwise, const Range& about = {});
   /// Returns a text that must be one of the branch's words and determines the other keys of its table.
@@ -85,8 +85,8 @@ class Config {
   [[nodiscard]] bool is_text(const std::string& key) const;
   /// Returns the keys of a table in alphabetical order; empty if there is no such table.
   [[nodiscard]] std::vector<std::string> keys(const std::string& table) const;
-  /// The same for a table with the keys `known`. If the file has the key `opened_by`, the table may have
-  /// other keys too. The caller checks the keys.
+  /// Returns the keys of a table. A schema lists the keys `known`, and allows other keys only if the file has
+  /// the key `opened_by`. The caller must check the returned keys.
   [[nodiscard]] std::vector<std::string> keys(const std::string& table, const std::vector<std::string>& known,
                                               const std::string& opened_by = {}) const;
   /// Returns the texts of a required list. A text may name a table at the same level as the key.
@@ -98,7 +98,7 @@ class Config {
   /// Records a problem with a key's value.
   void problem(const std::string& key, const std::string& what, const std::string& why,
                const std::string& remedy);
-  /// Records a problem if the config has a key that excludes others.
+  /// Records a problem if the config has `key`, which contradicts other keys.
   void exclude(const std::string& key, const std::string& what, const std::string& why,
                const std::string& remedy);
   /// Accepts a key or a table with any content, so that raise() does not report it as unknown.
@@ -116,7 +116,7 @@ class Config {
   bool take(const std::string& key, T& value, const Range& range);
   std::filesystem::path name_;
   std::shared_ptr<Tree> tree_;
-  std::shared_ptr<KeyTrace> trace_;  ///< of a config without a file
+  std::shared_ptr<KeyTrace> trace_;  ///< record of the keys that are read; null if there is a file
   Problems problems_;
 };
 

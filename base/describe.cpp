@@ -28,7 +28,8 @@ bool is_single(const KeyPath& path) {
   return std::ranges::none_of(path, [](const auto& name) { return name == kAnyName || name == "[]"; });
 }
 
-/// Returns the schema `inner` of the table of `path` as a schema of the root table.
+/// Returns the schema `inner` of the table that contains the key `path`, rewritten as a schema of the root
+/// table.
 Json nested(const KeyPath& path, Json inner, bool present) {
   for (std::size_t k = path.size() - 1; k-- > 0;) {
     if (path[k] == kAnyName) {
@@ -77,8 +78,9 @@ struct Consequence {
   std::vector<std::size_t> outcomes;
 };
 
-/// Runs the config-reading function for every outcome of every decision (a key whose value changes which keys
-/// are read), in the first context that reaches it.
+/// Runs the config-reading function for every outcome of every decision. A decision is a key whose value
+/// changes which keys are read. Its outcomes are tried in the first context (outcomes of other decisions)
+/// that reaches it.
 class Explorer {
  public:
   explicit Explorer(const std::function<void(Config&)>& read) : read_(read) {}
@@ -104,7 +106,8 @@ class Explorer {
     std::vector<Passes> passes;  ///< by outcome
   };
 
-  /// Reads with these outcomes, then with every other outcome of each new decision. Returns all passes.
+  /// Calls the reader with these outcomes, then with every other outcome of each new decision. Returns the
+  /// records of all calls.
   Passes explore(const Outcomes& outcomes, const std::vector<Decided>& context) {
     Passes own;
     std::vector<KeyDecision> fresh;

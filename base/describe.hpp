@@ -10,8 +10,8 @@ namespace swingbank {
 /// Returns the JSON Schema, as text, of the files that `read` accepts. The schema contains each key with
 /// type, range, allowed words, unit, meaning and default, and the keys that other keys require or exclude.
 /// `read` is called many times with a config without a file. The calls vary which keys are present and which
-/// words they have. Therefore `read` must read its keys regardless of other problems, and open no file.
-/// Conditions that it checks by Config::problem() are not part of the schema.
+/// words are their values. Therefore `read` must read its keys regardless of other problems, and open no
+/// file. Conditions that `read` checks by Config::problem() are not part of the schema.
 std::string describe_keys(const std::string& title, const std::function<void(Config&)>& read);
 
 }  // namespace swingbank

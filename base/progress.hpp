@@ -1,6 +1,6 @@
 #pragma once
-// Progress display of a long run: share done, rate and remaining time, as one updated line on a terminal and
-// as log lines elsewhere.
+// Progress display of a long run: fraction completed, rate and remaining time, as one updated line on a
+// terminal and as log lines elsewhere.
 #include <chrono>
 #include <cstdint>
 #include <string>

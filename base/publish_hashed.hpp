@@ -1,5 +1,5 @@
 #pragma once
-// Atomic publication of a file together with its hash, computed while the disk flushes.
+// Atomic publication of a file (durable.hpp) and computation of its hash while the disk flushes.
 #include <filesystem>
 #include <string>
 

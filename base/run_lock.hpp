@@ -16,7 +16,7 @@ struct LockWords {
 /// Lock on a folder, held from construction to destruction.
 class RunLock {
  public:
-  /// Exclusive lock, or a lock that several holders of this kind share.
+  /// `alone`: exclusive lock; `shared`: lock that several holders of kind `shared` hold at the same time.
   enum class Kind { alone, shared };
 
   /// Creates `file` if it is missing (its folder must exist), locks it and writes the holder into it:
@@ -27,12 +27,12 @@ class RunLock {
           std::chrono::milliseconds patience = std::chrono::seconds(5), Kind kind = Kind::alone);
   /// Releases the lock. The kernel also releases it when the last process with the open file ends, in any
   /// way; a forked child inherits the lock. The file remains: after a removal, one process could lock the
-  /// removed file and another its successor of the same name.
+  /// removed file and another process a new file of the same name.
   ~RunLock();
   RunLock(const RunLock&) = delete;
   RunLock& operator=(const RunLock&) = delete;
-  /// Removes the file if this object created it or `always` is true. For folders that no later run locks: a
-  /// rejected folder, or a folder with complete results.
+  /// Removes the file if this object created it or `always` is true. Call it only for a folder that no later
+  /// run locks: one that the command has rejected, or one with complete results.
   void withdraw(bool always = false);
 
  private:

@@ -27,8 +27,8 @@ void write_sealed(const SealedKind& kind, const std::filesystem::path& file, con
 /// Returns the destination of array i, which has `size` values. May throw Unusable.
 using PlaceArray = std::function<std::span<float>(std::size_t i, std::size_t size)>;
 /// Verifies the checksum, calls `start` with the header and the number of arrays, then reads each array into
-/// its `place`. `start` may throw Unusable. Returns false if there is no such file. Throws InputError if the
-/// file is damaged or Unusable was thrown.
+/// the memory that `place` returns. `start` may throw Unusable. Returns false if there is no such file.
+/// Throws InputError if the file is damaged or Unusable was thrown.
 bool read_sealed(const SealedKind& kind, const std::filesystem::path& file,
                  const std::function<void(const nlohmann::json&, std::size_t arrays)>& start,
                  const PlaceArray& place);

@@ -40,7 +40,7 @@ inline bool stop_asked() { return detail::stop_asked != 0; }
 struct Interrupted {};
 
 /// Installs handlers: from now on, a stop signal ends the work at its next interruption point.
-/// catch_stop_signals() ends this. For commands that report the values reached so far.
+/// catch_stop_signals() switches this off. For commands that report the values reached so far.
 inline void interrupt_on_stop_signals() {
   catch_stop_signals();
   detail::interruptible = 1;
@@ -51,8 +51,8 @@ inline bool interruption_asked() { return detail::interruptible != 0 && stop_ask
 inline void ask_to_stop() { detail::stop_asked = 1; }
 
 /// Guard that makes work during its lifetime interruptible: Ctrl-C ends it at the next interruption point.
-/// The destructor restores the handlers of the host program, such as Python. A thread other than the main one
-/// leaves the handler unchanged.
+/// The destructor restores the handlers of the host program, such as Python. In a thread other than the main
+/// one, the guard leaves the handler unchanged.
 class InterruptOnSigint {
  public:
   InterruptOnSigint() {

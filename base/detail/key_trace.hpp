@@ -14,8 +14,8 @@
 
 namespace swingbank {
 
-/// Path of a key: the names of the tables and the key. "*" is any name, and "[]" the elements of an array.
-/// "=WORD" are the keys of a table whose discriminator (Branch) has the value WORD.
+/// Path of a key: the names of the tables and the key. "*" is any name, and "[]" any element of an array.
+/// "=WORD" denotes the keys of a table whose discriminator (Branch) has the value WORD.
 using KeyPath = std::vector<std::string>;
 
 /// Allowed values of a key.
@@ -26,7 +26,7 @@ struct KeyForm {
   Range range;
   std::vector<std::string> words;      ///< allowed texts; empty: all
   nlohmann::ordered_json otherwise{};  ///< default value; null: unknown
-  bool varies = false;                 ///< whether the default differs between passes
+  bool varies = false;                 ///< whether the default differs between calls of the reader
   /// Returns whether the forms are equal except for the default value.
   [[nodiscard]] bool like(const KeyForm& other) const {
     return type == other.type && list == other.list && size == other.size && words == other.words &&
@@ -42,7 +42,7 @@ struct KeyDecision {
       values;               ///< values of the key; empty: the decision is whether the key is present
   bool otherwise = false;   ///< whether a missing key counts as the first value
   bool branch = false;      ///< whether each value has its own keys
-  std::size_t outcome = 0;  ///< outcome of this pass
+  std::size_t outcome = 0;  ///< outcome in the recorded call of the reader
   [[nodiscard]] std::size_t outcomes() const { return values.empty() ? 2 : values.size(); }
   [[nodiscard]] std::string id() const;
 };
@@ -63,8 +63,8 @@ class KeyTrace {
     std::vector<std::string> words, titles;  ///< its values and their descriptions
     std::string opened_by;                   ///< key whose presence allows words or names that are not listed
   };
-  /// `outcomes`: outcome of each decision by its id; a missing one is 0. `arrays`: a value that may be a
-  /// table, an array or a text is taken as an array or text; otherwise as a table.
+  /// `outcomes`: outcome of each decision by its id; a missing one is 0. `arrays`: true if a value that may
+  /// be a table, an array or a text is read as an array or text, false if it is read as a table.
   KeyTrace(std::map<std::string, std::size_t> outcomes, bool arrays)
       : outcomes_(std::move(outcomes)), arrays_(arrays) {}
 

@@ -1,6 +1,6 @@
 #pragma once
-// Tree of the keys for which a reader asks, collected over several passes (key_trace.hpp) and written as JSON
-// Schema.
+// Tree of the keys for which a config-reading function asks, collected over several calls of it
+// (key_trace.hpp) and written as JSON Schema.
 #include <map>
 #include <memory>
 #include <set>
@@ -12,7 +12,7 @@
 
 namespace swingbank {
 
-/// Node of the tree, a table or a key, with the results of all passes.
+/// Node of the tree, a table or a key, with the results of all passes (calls of the config-reading function).
 class KeyTree {
  public:
   using Json = nlohmann::ordered_json;
@@ -53,8 +53,8 @@ class KeyTree {
   KeyTrace::Table branch_;
   bool asked_for_ = false;              ///< whether a reader asks first whether the key is present
   int pass_ = 0;                        ///< number of passes so far; used in the root
-  int touched_ = 0, last_touched_ = 0;  ///< passes that read a key of this table, and the last of them
-  int needed_ = 0, last_needed_ = 0;    ///< passes that require it, and the last of them
+  int touched_ = 0, last_touched_ = 0;  ///< number of passes that read this table; number of the last one
+  int needed_ = 0, last_needed_ = 0;    ///< number of passes that require this node; number of the last one
 };
 
 }  // namespace swingbank
