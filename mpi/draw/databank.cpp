@@ -61,16 +61,16 @@ void draw_one(const DatasetConfig& config, std::uint64_t number, BoxedPlant& pla
 }
 
 /// Forecast of the number of candidates for the requested samples, to abort an infeasible request early. The
-/// model: with n accepted samples, the share \f$ e^{-n/n_0} \f$ of the admissible candidates is far enough
-/// from all of them. For the thesis's box and a distance of 0.7, it predicts the number of candidates for
-/// 15,000 to 240,000 samples within 8 %.
+/// model: with n accepted samples, the fraction \f$ e^{-n/n_0} \f$ of the admissible candidates is far enough
+/// from all accepted samples. For the thesis's box and a distance of 0.7, it predicts the number of
+/// candidates for 15,000 to 240,000 samples within 8 %.
 class Forecast {
  public:
   Forecast(std::uint64_t points, double patience)
       : points_(static_cast<double>(points)), patience_(patience) {}
-  /// Returns a lower estimate of the admissible candidates needed in total. `reached`: samples accepted so
-  /// far; `admissible`: admissible candidates so far. Returns nothing until kEnoughTooClose candidates were
-  /// too close.
+  /// Returns a lower estimate of the total number of admissible candidates that are needed. `reached`:
+  /// samples accepted so far; `admissible`: admissible candidates so far. Returns nothing until
+  /// kEnoughTooClose candidates were too close.
   [[nodiscard]] std::optional<double> draws(double reached, double admissible) const {
     const double too_close = admissible - reached;
     if (too_close < kEnoughTooClose) return {};
@@ -170,7 +170,7 @@ class Drawer {
     const auto reached = static_cast<double>(bank_.points()), admissible = static_cast<double>(admissible_);
     const auto needed = forecast_.draws(reached, admissible);
     const bool hopeless = needed && forecast_.hopeless(*needed);
-    // Also ends if the policy admits almost no candidate.
+    // The search also ends if the policy admits almost no candidate.
     if (!hopeless && admissible <= patience_ && static_cast<double>(bank_.candidates) <= 1000.0 * patience_)
       return;
     std::string why = fmt::format("{} candidates: {}", bank_.candidates, reasons(bank_));

@@ -1,8 +1,9 @@
 #pragma once
-// Databank: parameter sets drawn uniformly from their boxes with a minimum Euclidean distance, in raw
-// parameter units or box widths (`databank.scale`), by Poisson-disk dart throwing. Candidate k is a pure
-// function of (seed, k). Candidates are accepted in order, so the first n samples depend neither on the total
-// number nor on the computer. A "databank sample" is one parameter set.
+// Databank: parameter sets drawn uniformly from a box of parameter intervals, with a minimum distance, by
+// Poisson-disk dart throwing. The distance is Euclidean, in raw parameter units or box widths
+// (`databank.scale`). Candidate k is a pure function of (seed, k). Candidates are accepted in order, so the
+// first n samples depend neither on the total number nor on the computer. A "databank sample" is one
+// parameter set.
 #include <map>
 #include <string>
 #include <vector>

@@ -77,7 +77,8 @@ void write_databank(const std::filesystem::path& file, const Databank& bank, con
 
 Databank read_databank(const std::filesystem::path& file, const DatasetConfig& config,
                        const sim::plant::Plant& base, std::uint64_t points) {
-  // In a separate process: the checksums are inside the file, so HDF5 reads it unverified.
+  // Opens the file in a separate process, because HDF5 must read it before the checksums inside it can be
+  // verified.
   const store::h5::File f = store::h5::File::open_apart(
       file, {"f8/parameters", "text@format", "text@databank_hash", "text@values_hash"});
   const auto refuse = [&](const std::string& what, const std::string& why) {

@@ -397,7 +397,7 @@ void override_with(DatasetConfig& d, const Overrides& o, std::optional<double> m
 }  // namespace
 
 namespace {
-/// Reads all values; `megabytes`: size of a shard.
+/// Reads all values; `megabytes`: size of a shard [MB], none if `draws_per_shard` is given.
 DatasetConfig read_values(Config& c, std::optional<double>& megabytes) {
   DatasetConfig d;
   d.file = c.name();

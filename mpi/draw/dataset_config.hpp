@@ -59,14 +59,14 @@ struct RecordConfig {
 /// [operating_point]: random operating points. All quantities are uniformly distributed; a quantity without a
 /// range keeps its value of the case file.
 struct OperatingPointConfig {
-  std::uint64_t per_block = 2;                     ///< draws that share one operating point
+  std::uint64_t per_block = 2;                     ///< number of draws that share one operating point
   double loads_low = 1.0, loads_high = 1.0;        ///< common factor of all loads and of all generators' P
   double load_spread = 0.0;                        ///< individual factor of each load: 1 -+ this
   double dispatch_low = 1.0, dispatch_high = 1.0;  ///< individual factor of each generator's P
   double voltage = 0.0;                            ///< change of each voltage setpoint: -+ this [pu]
   /// Loading: apparent power / machine base; 0: the bases do not change.
   double loading_low = 0.0, loading_high = 0.0;
-  /// Share of oversized machines, and the factor of their base.
+  /// Fraction of machines that are oversized, and range of the factor that multiplies their base.
   double oversized_share = 0.0, oversized_low = 1.0, oversized_high = 1.0;
   int lines_out_low = 0, lines_out_high = 0;  ///< lines out of service
   [[nodiscard]] bool draws_bases() const { return loading_high > 0.0; }
@@ -80,12 +80,12 @@ struct Overrides {
   bool int16 = false;                                     ///< store records as 16-bit integers
 };
 
-/// Values of a dataset's config.
+/// Values of a dataset's config. A draw is one simulated event.
 struct DatasetConfig {
   std::filesystem::path file, raw, dyr;
   Overrides overrides;               ///< as given; already applied to the other members
-  bool psse = true;                  ///< convention of PSS/E, else of ANDES
-  sim::grid::CaseOptions grid_case;  ///< treatment of an incomplete raw or dyr, as by `simulate`
+  bool psse = true;                  ///< true: conventions of PSS/E; false: of ANDES
+  sim::grid::CaseOptions grid_case;  ///< treatment of an incomplete case, as in `swingbank simulate`
   bool widen_limits = false;         ///< widen limits that the operating point violates
   Vary vary = Vary::one;
   std::vector<int> generators;   ///< bus numbers of the machines that vary
@@ -138,7 +138,7 @@ struct Study {
 Study load_study(const DatasetConfig& config);
 
 /// Returns the XXH3-64 hash of the canonical config, the contents of .raw, .dyr and user-defined models, and
-/// the kernel's variant; 16 hex digits.
+/// the description `kernel` of the SIMD kernel; 16 hex digits.
 std::string config_hash(const DatasetConfig& config, const std::string& kernel);
 
 }  // namespace swingbank::mpi::draw

@@ -6,7 +6,7 @@ namespace swingbank::mpi::draw {
 
 namespace {
 
-/// Sets the header's fixed properties of the varied machines.
+/// Sets the header's system frequency and the fixed properties of the varied machines.
 void describe_machines(const Study& study, store::DatasetHeader& h) {
   const auto& records = study.config.effect().parameters;
   const auto boxed = [&](std::size_t i) {

@@ -15,8 +15,8 @@ namespace {
 
 namespace network = sim::network;
 
-/// Largest number of unusable draws in a row; more indicate an infeasible config. It is also the number of
-/// keys per block, which determines the content of datasets: never change it.
+/// Largest number of unusable operating points in a row; more indicate an infeasible config. It is also the
+/// number of random-number keys per block, which determines the content of datasets: never change it.
 constexpr std::uint64_t kMostDraws = 100;
 /// Range of plausible bus voltages [pu]. The power flow may have solutions outside of it, but no grid
 /// operates there for long.

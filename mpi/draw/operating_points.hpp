@@ -26,8 +26,8 @@ struct OperatingPoint {
 class OperatingPoints {
  public:
   explicit OperatingPoints(const Study& study) : study_(study) {}
-  /// Returns the operating point of a block; caches the latest one. Throws InputError if 100 draws in a row
-  /// are unusable.
+  /// Returns the operating point of a block; caches the latest one. Throws InputError if 100 operating points
+  /// in a row are unusable.
   const OperatingPoint& at(std::uint64_t block);
 
  private:

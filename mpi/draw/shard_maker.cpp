@@ -43,8 +43,8 @@ ShardMaker::ShardMaker(const Study& study, const Databank& bank)
   }
 }
 
-/// Returns the batch of a generator. A batch records the same plants in every run; therefore, with Vary::one,
-/// each generator needs its own batch.
+/// Returns the SIMD batch of events of a generator. A batch records the same plants in every run; therefore,
+/// with Vary::one, each generator needs its own batch.
 sim::batch::Batch& ShardMaker::batch_for(std::size_t generator) {
   auto& batch = batches_[generator];
   if (!batch) {

@@ -36,13 +36,13 @@ class ShardMaker {
   std::vector<int> source_;        ///< index into simulated_ of each channel of the config; -1: frequency
   int voltage_ = -1, angle_ = -1;  ///< indices into simulated_
   bool angle_recorded_ = false;
-  /// Batch of each generator whose parameters are drawn; a single batch with key 0 if those of all generators
-  /// are drawn in every event.
+  /// SIMD batch of events for each generator whose parameters are drawn; a single batch with key 0 if the
+  /// parameters of all generators are drawn in every event.
   std::map<std::size_t, std::unique_ptr<sim::batch::Batch>> batches_;
 };
 
-/// Returns the kernel's options for a config. They select a variant of the kernel, which is part of the
-/// config hash.
+/// Returns the options of the SIMD kernel for a config. They determine the kernel's variant
+/// (Batch::variant()), which is part of the config hash.
 sim::batch::BatchOptions batch_options(const DatasetConfig& config);
 /// Returns Batch::variant() for a study.
 std::string kernel_variant(const Study& study);

@@ -26,8 +26,8 @@ SimulatedShards::SimulatedShards(const DatasetConfig& config, int threads) : stu
   attributes_ = shard_attributes(study_, config_hash(config, kernel), kernel);
   header_ = dataset_header(study_, attributes_);
   const auto& base = study_.grid.plants[static_cast<std::size_t>(study_.plants[0])];
-  // In a temporary thread, because its OpenMP threads end with it: a process with OpenMP threads must not
-  // fork.
+  // Runs in a temporary thread, whose OpenMP threads end with it, because a process with OpenMP threads must
+  // not fork.
   bank_ = std::async(std::launch::async, [&] {
             return draw_databank(study_.config, base, study_.config.points());
           }).get();

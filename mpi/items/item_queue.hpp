@@ -26,9 +26,9 @@ class ItemQueue {
   ItemQueue(const ItemQueue&) = delete;
   ItemQueue& operator=(const ItemQueue&) = delete;
 
-  /// Processes items on rank 0 until none is left, and calls `serve` between them. `serve` replies to the
-  /// other ranks with next() and finish(), and returns whether any of them still works. Returns true if every
-  /// item is done.
+  /// Processes items on rank 0 until none is left, and calls `serve` repeatedly meanwhile. `serve` replies to
+  /// the other ranks with next() and finish(), and returns whether any of them still works. Returns true if
+  /// every item is done.
   bool run(const std::function<bool()>& serve);
   /// Returns the next item for an idle rank; none if all are given or the run stops.
   std::optional<std::size_t> next(int rank);

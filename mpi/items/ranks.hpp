@@ -19,7 +19,7 @@ struct SharedItems {
   std::function<void(std::size_t item, const std::string& result)> done;
   /// Time limit of an item [s]; if it is exceeded, the run ends with an error. 0: unlimited.
   double limit = 0.0;
-  /// Returns an item's name for the message of this error.
+  /// Returns an item's name for the message about an exceeded time limit.
   std::function<std::string(std::size_t item)> name = [](std::size_t item) { return std::to_string(item); };
 };
 
@@ -40,11 +40,11 @@ class Ranks {
   /// Runs `prepare` on every rank. If it throws on any rank, all ranks throw the problems of the first such
   /// rank. Collective.
   virtual void agree(const std::string& where, const std::function<void()>& prepare) const = 0;
-  /// Processes the items until all are done or a rank receives a stop signal (base/stop_signal.hpp); items in
-  /// progress are then finished and no others are started. Collective; rank 0 distributes the items and also
-  /// works. Returns true on all ranks if every item is done. An item that exceeds its time limit ends the
-  /// program on all ranks, because its rank may hang. An exception of `work` or `done` also ends the run on
-  /// all ranks, so neither may throw because of an item's content.
+  /// Processes the items until all are done or a rank receives a stop signal (base/stop_signal.hpp). After a
+  /// stop signal, items in progress are finished and no others are started. Collective; rank 0 distributes
+  /// the items and also works. Returns true on all ranks if every item is done. An item that exceeds its time
+  /// limit ends the program on all ranks, because its rank may hang. An exception of `work` or `done` also
+  /// ends the run on all ranks, so neither may throw because of an item's content.
   [[nodiscard]] virtual bool share_items(const SharedItems& shared) const = 0;
 };
 

@@ -71,7 +71,7 @@ std::optional<draw::Databank> shared_databank(const draw::Study& study, const fs
   draw::Databank bank;
   bank.dimensions = study.config.box.size();
   const auto& base = study.grid.plants[static_cast<std::size_t>(study.plants[0])];
-  agree(world, "databank", [&] {  // allocate before the draw, which may take long
+  agree(world, "databank", [&] {  // allocate before the sampling, which may take long
     if (rank != 0) allocate_values(bank.values, study.config.points() * bank.dimensions, rank);
   });
   agree(world, "databank", [&] {
@@ -127,7 +127,8 @@ struct Groups {
   Groups& operator=(const Groups&) = delete;
 };
 
-/// Runs rank 0: the master and, unless it is dedicated, the worker, which polls the master between its draws.
+/// Runs the master on rank 0 and, unless the master is dedicated, a worker that polls the master between its
+/// draws.
 void lead(Worker* worker, Master& master, Progress& progress) {
   if (worker != nullptr) {
     std::uint64_t counted = 0;  // draws of the current shard that this rank has already displayed

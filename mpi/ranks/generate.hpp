@@ -22,8 +22,8 @@ struct GenerateOptions {
   Progress::Mode progress = Progress::Mode::automatic;
 };
 
-/// Generates the missing shards of a dataset, or of one part of it. Collective over `world`. Returns 0, or 2
-/// after a graceful stop if shards are missing. Throws the same InputError on all ranks.
+/// Generates the missing shards of a dataset, or of one part of it. Collective over `world`. Returns the exit
+/// code: 0, or 2 if shards are missing after a graceful stop. Throws the same InputError on all ranks.
 int generate(const draw::DatasetConfig& config, const GenerateOptions& options, MPI_Comm world);
 
 }  // namespace swingbank::mpi::ranks

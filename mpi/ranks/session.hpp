@@ -26,8 +26,8 @@ class MpiSession {
 };
 
 /// Runs a program's work and returns its exit code, or 1 after an exception. All ranks throw the same
-/// AgreedError, and rank 0 prints it. Any other exception concerns one rank only: that rank prints it with
-/// its number and ends all ranks, because the others would wait for it forever.
+/// AgreedError, and rank 0 prints it. Any other exception concerns one rank only: that rank prints the
+/// exception with its rank number and ends all ranks, because the others would wait for it forever.
 int run_on_all_ranks(const MpiSession& session, const std::function<int()>& work);
 
 }  // namespace swingbank::mpi::ranks

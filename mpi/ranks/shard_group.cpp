@@ -87,8 +87,8 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
   int mine = problems.empty() ? size : rank, first = size;
   MPI_Request request;  // non-blocking: the others may wait for minutes, without busy polling
   MPI_Iallreduce(&mine, &first, 1, MPI_INT, MPI_MIN, group, &request);
-  // The failure may have occurred within a collective operation of HDF5. The others then wait there for this
-  // rank.
+  // The failure may have occurred within a collective operation of HDF5, in which the other ranks wait for
+  // this rank.
   if (!wait_for(request, problems.empty() ? 0.0 : kReportAfter)) {
     const std::string why = problems.front().sentence();
     std::fprintf(stderr, "failure at rank %d of a group of %d (%s): waiting for the other ranks\n", rank,
@@ -106,7 +106,7 @@ std::vector<Problem> gather_problems(MPI_Comm group, const std::string& where,
 
 }  // namespace
 
-/// Does not allocate memory, because a lack of memory may be the cause.
+/// Does not allocate memory, because a lack of memory may be the cause of the failure.
 void end_all_ranks(const char* why) {
   int rank = 0, size = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);

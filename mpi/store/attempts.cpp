@@ -66,7 +66,7 @@ AttemptLog::~AttemptLog() {
   if (ended_) return;
   try {
     end("failed");
-  } catch (const std::exception&) {  // a full disk may be the cause of the failure
+  } catch (const std::exception&) {  // ignored: the disk may be full
   }
 }
 

@@ -16,7 +16,7 @@ namespace swingbank::mpi::store::h5 {
 /// file cannot be read.
 std::string read_asked(const std::filesystem::path& file, const std::vector<std::string>& names);
 
-/// Objects in these bytes, in the calling process.
+/// Objects in the bytes of read_asked(), for the calling process.
 class Contents {
  public:
   /// Array with its type.

@@ -32,8 +32,8 @@ std::string reason() {
   return text;
 }
 
-/// Returns the errno value in a message of HDF5's driver ("errno = 28"), or the equivalent of an MPI-IO error
-/// in it; 0 if it has neither.
+/// Returns the errno value in a message of HDF5's driver ("errno = 28"), or the value equivalent to an MPI-IO
+/// error in the message; 0 if the message has neither.
 int system_error(const std::string& why) {
   constexpr std::string_view kErrno = "errno = ";
   if (const auto at = why.find(kErrno); at != std::string::npos)

@@ -23,8 +23,8 @@ std::recursive_mutex& lock();
 inline std::atomic<bool> close_failed = false;
 /// Stores the reason of the first failed close, because HDF5 discards it at its next call.
 void note_failed_close();
-/// Returns this reason at the first call, then an empty text. Needed because a destructor that closes an
-/// object cannot throw.
+/// At the first call, returns the reason that note_failed_close() stored; afterwards returns an empty text.
+/// Needed because a destructor that closes an object cannot throw.
 std::string unreported_failed_close();
 
 /// Owner of an HDF5 identifier.

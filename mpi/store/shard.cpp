@@ -157,7 +157,7 @@ ShardData read_shard_apart(const fs::path& file, const ShardFields& fields, cons
                                  "real@rate",          "text@machine_model",   "text@channel_names",
                                  "text@channel_units", "text@parameter_names", "text@parameter_units",
                                  "real@parameter_low", "real@parameter_high",  "text@parameter_effects"};
-  // Arrays with their types in a shard; shapes are included.
+  // Requested arrays, each with its type in a shard. The reading process also returns their shapes.
   for (const char* array : {"/records", "f4/record_scale", "f8/parameters", "u8/sample_id", "i4/generator",
                             "f8/fault", "f8/largest_spread", "u1/angle_valid", "f8/machine_base"})
     names.emplace_back(array);

@@ -100,7 +100,7 @@ std::uint64_t shard_hash(const std::vector<std::uint64_t>& rows,
                          const std::vector<std::uint64_t>& draw_sample_id,
                          const std::vector<std::uint8_t>& draw_outcome,
                          const std::vector<std::int32_t>& draw_redrawn);
-/// The same for a shard in memory.
+/// Returns the hash of a shard in memory.
 std::uint64_t shard_hash(const ShardData& data);
 /// Returns the number of draws by outcome, for outcomes that occur. Throws InputError with `file` for an
 /// invalid outcome.

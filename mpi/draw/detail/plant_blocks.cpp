@@ -13,7 +13,7 @@ int times_in(const sim::plant::Plant& plant, const sim::Effect& effect) {
 
 namespace {
 std::string objection_to(const sim::plant::Block& block, Policy policy) {
-  if (policy == Policy::physical)  // first: it rejects most draws, and `check` formats messages
+  if (policy == Policy::physical)  // first: it rejects most samples, and `check` (which formats text) is slow
     if (const auto why = block.effect->unphysical(block.p.data()); !why.empty())
       return "not " + std::string(why);
   Problems problems;

@@ -1,5 +1,5 @@
 #pragma once
-// Assignment of a databank sample's parameters to the blocks of a plant.
+// Assignment of a databank sample's parameters to the blocks (instances of effects) of a plant.
 #include <string>
 #include <vector>
 
@@ -8,7 +8,8 @@
 
 namespace swingbank::mpi::draw {
 
-/// Returns the number of occurrences of an effect in a plant, other than its machine and instruments.
+/// Returns the number of occurrences of an effect in a plant. The plant's machine and instruments are not
+/// counted.
 int times_in(const sim::plant::Plant& plant, const sim::Effect& effect);
 
 /// Returns why the parameters of the machine or of the box's effects are inadmissible; empty if they are

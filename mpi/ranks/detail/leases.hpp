@@ -26,8 +26,8 @@ class Leases {
 
   /// Returns the next shards for a group; empty if none are missing. `alone`: at most one shard.
   std::vector<std::uint64_t> give(int group, bool alone, Clock::time_point now);
-  /// Ends a group's lease, which took `seconds` [s] and generated the shards `made`. Its other shards are
-  /// missing again.
+  /// Ends a group's lease, which took `seconds` [s] and generated the shards `made`. The other shards of the
+  /// lease count as missing again.
   void take_back(int group, const std::vector<std::uint64_t>& made, double seconds);
 
   [[nodiscard]] std::map<int, Lease>& out() { return out_; }

@@ -17,7 +17,7 @@ namespace {
 constexpr double kWarnAfter = 120.0;  ///< age of a lease at the first warning [s]
 /// Intended duration of a lease [s]; 10,000 groups then send a thousand requests per second.
 constexpr double kLeaseLasts = 10.0;
-/// Largest intended duration of a lease, as a share of its timeout.
+/// Largest intended duration of a lease, as a fraction of its timeout.
 constexpr double kShareOfTimeout = 0.25;
 
 double lease_lasts(double timeout) {

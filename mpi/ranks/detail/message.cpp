@@ -55,7 +55,7 @@ bool wait_for(MPI_Comm world, int from, int tag, double timeout) {
 }
 
 bool wait_for(MPI_Request request, double timeout) {
-  constexpr double kAwake = 200e-6;  // [s], longer than a reduction within a group takes
+  constexpr double kAwake = 200e-6;  // time of busy polling [s], above that of a reduction in a group
   const double start = MPI_Wtime();
   for (int done = 0;;) {
     MPI_Test(&request, &done, MPI_STATUS_IGNORE);

@@ -13,7 +13,7 @@ namespace swingbank::mpi::ranks {
 
 constexpr int kReportTag = 1, kLeaseTag = 2, kAuditTag = 3;
 
-/// Report of a group leader on its lease; it is also the request for the next one.
+/// Report of a group leader on its lease; it is also the request for the next lease.
 struct Report {
   std::vector<store::JournalLine> finished;  ///< finished shards of the lease, already on disk
   double seconds = 0.0;                      ///< time for these shards [s]

@@ -1,5 +1,6 @@
 #pragma once
-// Provenance of a dataset: software and machine, for its card and its list of attempts.
+// Provenance of a dataset: software and machine, for its card (card.json) and its log of runs
+// (attempts.jsonl).
 #include <map>
 #include <string>
 

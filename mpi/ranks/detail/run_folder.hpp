@@ -12,8 +12,8 @@
 
 namespace swingbank::mpi::ranks {
 
-/// Locks that a run holds until it ends: one on the folder, exclusive or shared with other parts, and one on
-/// its part.
+/// Locks that a run holds until it ends: one on the folder, exclusive or shared with the runs of other parts
+/// (`--part`), and one on its part.
 struct FolderLocks {
   std::unique_ptr<RunLock> folder, part;
   /// Removes the lock files from a folder that the run rejects.
@@ -23,9 +23,9 @@ struct FolderLocks {
   }
 };
 
-/// Locks the folder, writes its header if it is new, calls `furnish` while other parts wait, and removes
-/// temporary files of killed runs. Throws InputError if the folder is in use, contains a dataset of another
-/// config, or contains files but no dataset.
+/// Locks the folder, writes its header if it is new, calls `furnish`, which may add files, and removes
+/// temporary files of killed runs. Runs of other parts wait meanwhile. Throws InputError if the folder is in
+/// use, contains a dataset of another config, or contains files but no dataset.
 FolderLocks enter(const GenerateOptions& options, const store::DatasetHeader& header,
                   const std::function<void()>& furnish);
 

@@ -54,8 +54,8 @@ store::JournalLine Worker::make(std::uint64_t shard) {
   return line;
 }
 
-/// Counts a block in the shard that contains the block's first draw. Thus each block counts once for any
-/// division into shards and ranks.
+/// Counts a block (draws with one operating point) in the shard that contains the block's first draw. Thus
+/// each block counts once for any division into shards and ranks.
 std::map<std::string, std::uint64_t> Worker::count_operating_points(const store::ShardData& part) const {
   const auto& point = study.config.operating_point;
   if (!point) return {};
