@@ -33,7 +33,7 @@ struct InputRecipe {
   double start_s = 0.0, end_s = 0.0;  ///< window [s], end excluded
   std::size_t slice = 1;              ///< keep every slice-th sample: 120/s and 4 give 30/s
   InputForm form = InputForm::absolute;
-  bool seconds_as_steps = false;  ///< with PCA: the components of a second form one step of a series
+  bool seconds_as_steps = false;  ///< with PCA: the components of each second form one time step
   bool shows_level = false;       ///< form physics: append the noise level after the steady values
   bool regressions = false;       ///< form physics only: append regressions between the signals
 };
@@ -43,9 +43,9 @@ struct InputSelection {
   std::vector<std::size_t> channels;  ///< indices into the record's channels
   std::size_t first = 0, step = 1, samples = 0;
   InputForm form = InputForm::absolute;
-  double rate = 0.0;                    ///< after slicing [1/s]
-  std::optional<Physics> physics;       ///< form physics only: converter to the series
-  std::optional<SwingIntegrals> swing;  ///< form swing only: converter to the integrals
+  double rate = 0.0;                    ///< sampling rate after decimation [1/s]
+  std::optional<Physics> physics;       ///< form physics only: conversion of a record to series
+  std::optional<SwingIntegrals> swing;  ///< form swing only: conversion of a record to integrals
   bool seconds_as_steps = false;        ///< as in InputRecipe
   bool shows_level = false;  ///< whether the last value is the noise level (form physics: level_input())
   bool regressions = false;  ///< form physics only: Features append the regression coefficients
@@ -54,7 +54,7 @@ struct InputSelection {
     if (swing) return SwingIntegrals::terms;
     return physics ? physics->channels() : channels.size() * (form == InputForm::both ? 2 : 1);
   }
-  /// Returns the number of values after the series.
+  /// Returns the number of steady values after the series.
   [[nodiscard]] std::size_t levels() const { return physics ? physics->levels() : 0; }
   [[nodiscard]] std::size_t values() const { return outputs() * samples + levels() + (shows_level ? 1 : 0); }
   /// Computes the input of one row. record: channels x record_samples; `level`: noise level; `reactance`: X'd

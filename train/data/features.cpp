@@ -32,7 +32,7 @@ Features Features::fit(const ShardStream& stream, std::span<const std::uint64_t>
     const std::size_t count = std::min(kRows, rows.size() - begin);
     stream.read(rows.subspan(begin, count), series.data());
     const std::size_t from = f.channels_ * f.samples_, to = f.channels_ * f.length_;
-    for (std::size_t r = 0; r < count; ++r)  // the scale is still the identity: PCA only
+    for (std::size_t r = 0; r < count; ++r)  // applies only the PCA: the scale is still the identity
       f.scaled(series.data() + r * from, values.data() + r * to);
     for (std::size_t i = 0; i < count * f.channels_ * f.length_; ++i)
       moments.add(f.group(i / f.length_ % f.channels_, i % f.length_), values[i]);

@@ -14,10 +14,10 @@ namespace swingbank::train::data {
 
 struct FeatureSizes {
   std::size_t channels = 0, samples = 0;
-  std::size_t pca_components = 0, pca_per_second = 0;  ///< 0: no PCA
+  std::size_t pca_components = 0, pca_per_second = 0;  ///< components, and samples of a second; 0: no PCA
   std::size_t levels = 0, kept = 0, noisy = 0;         ///< WhiteningSizes; kept = 0: no whitening
-  std::size_t seconds_as_steps = 0;                    ///< 1: the components of a second form one step
-  std::size_t regressed = 0;                           ///< WhiteningSizes: number of regression coefficients
+  std::size_t seconds_as_steps = 0;  ///< 1: the components of each second form one time step
+  std::size_t regressed = 0;         ///< WhiteningSizes: number of regression coefficients
 };
 
 class Features {

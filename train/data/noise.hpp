@@ -1,6 +1,6 @@
 #pragma once
 // Measurement noise that is added to a dataset's records while they are read. It is a pure function of seed,
-// draw, row, channel and sample, so that it does not depend on the order of reading.
+// realisation, row, channel and sample, so that it does not depend on the order of reading.
 // sim/core/measurement_noise.hpp defines the magnitudes.
 #include <cstdint>
 #include <optional>
@@ -31,8 +31,8 @@ struct Noise {
   std::uint64_t draw = 0;            ///< number of the realisation; also selects the random levels
 };
 
-/// Returns the network input that encodes a noise level: half the logarithm of level + 1e-5, relative to
-/// 1e-3. Level 0 is thus encoded as 0.001 %.
+/// Returns the network input that encodes a noise level: half the natural logarithm of (level + 1e-5) / 1e-3.
+/// Level 0 is thus encoded as 0.001 %.
 float level_input(double level);
 /// Inverse of level_input().
 double level_of_input(float input);
@@ -46,7 +46,7 @@ class RecordNoise {
   /// Adds noise to a record, channels x samples of the dataset's row `row`. If each row has a random level,
   /// the noise consists of segments of one stored series; this takes a tenth of the time.
   void add(std::uint64_t row, const Noise& noise, float* record) const;
-  /// Adds noise of the recipe's level with draw 0.
+  /// Adds noise of the recipe's level, realisation 0.
   void add(std::uint64_t row, float* record) const { add(row, {recipe_.level}, record); }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Normalisation of inputs to zero mean and unit variance per group, and scaling of targets. Both are fitted
-// on training rows only.
+// Normalisation of inputs to zero mean and unit variance per group (a channel or PCA component), and scaling
+// of targets. Both are fitted on training rows only.
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -1,6 +1,7 @@
 #pragma once
-// Access to a dataset's rows for training. The labels of all rows are always in memory. The series are kept
-// in memory if they fit; otherwise they are read in blocks ahead of use, with the same result.
+// Access to a dataset's rows for training. The labels of all rows are always in memory. The rows' series
+// (signals that form the network's input) are kept in memory if they fit. Otherwise they are read in blocks
+// ahead of use, with the same result.
 #include <cstdint>
 #include <functional>
 #include <future>
@@ -29,7 +30,7 @@ struct StreamOptions {
   NoiseRecipe noise = {};
 };
 
-inline constexpr std::uint64_t kValidationDraw = std::uint64_t{1} << 32;  ///< larger than any epoch number
+inline constexpr std::uint64_t kValidationDraw = std::uint64_t{1} << 32;  ///< above any epoch's number
 
 class ShardStream {
  public:
@@ -87,7 +88,7 @@ class ShardStream {
                  const Noise& noise, float* out) const;
   /// Returns the fixed X'd of a row's machine [pu on the machine base].
   [[nodiscard]] double reactance(std::uint64_t row) const;
-  /// Reads one contiguous run of rows of a shard and copies the wanted ones.
+  /// Row to read, and its position in the output. read_run() copies such rows from a contiguous run.
   struct Wanted {
     std::uint64_t row;
     std::size_t slot;

@@ -14,10 +14,11 @@ namespace swingbank::train::data {
 struct RowSplit {
   std::vector<std::uint64_t> train, validation, test;
   std::vector<std::int32_t> set_aside = {};     ///< bus numbers of the generators used only for recalibration
-  std::vector<std::uint64_t> calibration = {};  ///< their rows
+  std::vector<std::uint64_t> calibration = {};  ///< rows of these generators
 };
 
-/// Splits the groups of rows 60 / 20 / 20. Throws InputError if a part is empty.
+/// Splits the groups of rows: 60 % training, 20 % validation, 20 % test. Throws InputError if a part is
+/// empty.
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
 /// Plan of a leave-one-out split.
 struct LeaveOneOut {
@@ -33,12 +34,12 @@ struct LeaveOneOut {
 /// samples, `validation_share` is for validation and the rest for training, except for the generators set
 /// aside. Throws InputError if the generator has no rows or is the only one.
 RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan);
-/// Returns the split whose test rows are the whole dataset. Of the databank samples of the rows for training
-/// only, `validation_share` is for validation and the rest for training. Throws InputError if one of the
+/// Returns the split whose test rows are the whole dataset. Of the databank samples of the training-only
+/// rows, `validation_share` is for validation and the rest for training. Throws InputError if one of the
 /// three parts is empty.
 RowSplit split_across(const Labels& labels, double validation_share, std::uint64_t seed);
-/// Keeps a share of the training rows: the first rows of the dataset and of the training dataset, as if both
-/// were smaller. Throws InputError if no row remains.
+/// Keeps a fraction of the training rows: the first rows of the dataset and of the training dataset, as if
+/// both datasets were smaller. Throws InputError if no row remains.
 void keep_share(RowSplit& split, const Labels& labels, double share);
 /// Returns the bus numbers of the generators with rows, ascending. Each generator is one fold.
 std::vector<std::int32_t> generators(const Labels& labels);

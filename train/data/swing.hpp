@@ -12,12 +12,12 @@ namespace swingbank::train::data {
 
 /// Window of the integrals, and constants of the record.
 struct SwingWindow {
-  double rate = 0.0;                        ///< of the record [1/s]
-  double event_s = 0.0;                     ///< event time; the record is steady before [s]
+  double rate = 0.0;                        ///< sampling rate of the record [1/s]
+  double event_s = 0.0;                     ///< event time [s]; the record is steady before it
   double start_s = 0.0;                     ///< latest end of the fault [s]
   double end_s = 0.0;                       ///< latest end of the integrals [s]
   double system_frequency = 0.0;            ///< [Hz]
-  sim::FrequencyFilter frequency_filter{};  ///< of the channel "frequency"
+  sim::FrequencyFilter frequency_filter{};  ///< filter of the channel "frequency"
 };
 
 /// Terms of the weak swing equation. For a test function \f$ \phi \f$ that is zero at both ends of the

@@ -17,10 +17,10 @@ constexpr std::size_t kRowsToFit = 8000;  ///< about fifteen times the number of
 constexpr std::size_t kRowsOfWidths = 5000;
 /// Distance of the 10 % and 90 % quantiles of a normal distribution, in standard deviations.
 constexpr float kMiddleInDeviations = 2.56f;
-constexpr float kStillRow = 1e-6f;  ///< added to the size of a row, which may be constant [pu]
+constexpr float kStillRow = 1e-6f;  ///< added to a row's size, which is 0 for a constant row [pu]
 constexpr double kRank = 1e-9;      ///< relative variance up to which a component is rounding error
 constexpr std::size_t kRowsOfNoise = 5000;
-constexpr double kSmallLevel = 1e-4;        ///< level at which the noise, proportional to it, is measured
+constexpr double kSmallLevel = 1e-4;        ///< noise level of the fit; the noise is proportional to it
 constexpr float kWidestCoefficient = 4.0f;  ///< limit of a coefficient's deviation from its median, in widths
 /// Limit of a row's noise, as a multiple of the median: a low voltage near a fault amplifies the noise.
 constexpr float kLongestNoise = 3.0f;

@@ -110,7 +110,7 @@ class Rows {
     r.noise = sim::MeasurementNoise{kWeights};
     return r;
   }
-  /// Returns the priors of the parameters, which only bound them to the box.
+  /// Returns priors so wide that they only bound the parameters to the box.
   [[nodiscard]] std::vector<sim::direct::ParameterPrior> anywhere() const {
     auto all = unknown_;
     for (auto& f : all) f.deviation = kNoPrior * (f.high - f.low);
@@ -171,8 +171,9 @@ class Rows {
   Method method_;
   data::RecordNoise noise_;
   sim::MeasurementNoise level_;
-  double event_ = 0;  ///< [s]
-                      /// Parameters by generator: the dataset's value if it is constant, else the default.
+  /// Fault time [s].
+  double event_ = 0;
+  /// Parameters by generator: the dataset's value if it is constant, else the default.
   std::map<std::int32_t, std::vector<double>> known_;
   std::vector<double> low_, high_;
   std::vector<int> index_, free_;

@@ -1,5 +1,5 @@
 #pragma once
-// Estimates without training, by the machine's equations. The tables show them beside the networks.
+// Estimates without training, by the machine's equations. The result tables list them beside the networks.
 #include <array>
 #include <functional>
 #include <span>

@@ -19,7 +19,7 @@ struct TrainingRecipe {
   double learning_rate = 0.0;     ///< of Adam
   std::string schedule;           ///< "constant", or "cosine": short warm-up, then decay to 1 %
   std::size_t patience = 0;       ///< epochs without improvement before stopping
-  double validation_share = 0.0;  ///< share of the training generators' databank samples
+  double validation_share = 0.0;  ///< fraction of the training generators' databank samples for validation
   /// Exponent of the loss weights: variance^power is the weight of a parameter's squared error, relative to
   /// its variance. 0: equal weights; 1: squared error in raw units, as in the tables.
   double loss_power = 0.0;
@@ -27,7 +27,7 @@ struct TrainingRecipe {
   double clip = 0.0;           ///< largest gradient norm; 0: no clipping
   double average = 0.0;        ///< decay factor of the averaged weights per step; 0: no averaging
   bool training_rows = false;  ///< whether to train on the training dataset's rows too
-  std::string kind = {};       ///< file name in train/networks; usually its name in the experiment
+  std::string kind = {};       ///< file name in train/networks; usually the network's name
   std::string corrects = {};   ///< method of train/direct whose estimates the network corrects; empty: none
   /// Distribution of the noise levels of training rows. If present, every row has a random level in every
   /// epoch, and the level is an input; one network then serves all levels. If absent, training rows have the
@@ -47,7 +47,7 @@ struct NetworkInput {
 struct Judging {
   std::vector<double> noise;        ///< levels (sim/core/measurement_noise.hpp); 0: no noise
   std::size_t test_rows = 0;        ///< approximate number of rows, evenly spaced; 0: all
-  std::vector<double> shares = {};  ///< of the training rows; one more run each (first level and fold)
+  std::vector<double> shares = {};  ///< fractions of the training rows; one more run each (first level, fold)
 };
 
 struct Preset {
@@ -79,12 +79,12 @@ struct Experiment {
   std::string title;
   std::filesystem::path dataset;           ///< config of the dataset
   std::filesystem::path training_dataset;  ///< config of additional training rows; empty: none
-  bool leave_one_out = false;              ///< leave-one-out split; if neither: 60/20/20
+  bool leave_one_out = false;              ///< leave-one-out split; 60/20/20 if `across` is false too
   bool across = false;                     ///< trains on training_dataset, tests on the whole `dataset`
-  std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out; empty for a split
+  std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out, one per fold
   std::map<std::string, Preset> presets;
 
-  /// Throw InputError that lists the available names.
+  /// Return a preset, or its settings for a network. Throw InputError that lists the available names.
   [[nodiscard]] const Preset& preset(const std::string& name) const;
   [[nodiscard]] const TrainingRecipe& training(const std::string& preset, const std::string& network) const;
   [[nodiscard]] const NetworkInput& input(const std::string& preset, const std::string& network) const;

@@ -31,7 +31,8 @@ struct LoopData {
   const data::Features& features;
   std::span<const std::uint64_t> train, validation;  ///< row numbers, ascending
   std::span<const float> targets;                    ///< scaled targets, all rows of the dataset x outputs
-  std::span<const float> guesses = {};  ///< all rows x outputs [scaled]; appended to the features
+  /// Estimates to correct, all rows x outputs [scaled]; they are appended to the features.
+  std::span<const float> guesses = {};
   std::span<const float> weights = {};  ///< of the outputs' squared errors, with mean 1; empty: equal
   /// Scalar loss of outputs and scaled targets; empty: weighted mean squared error.
   std::function<at::Tensor(const at::Tensor&, const at::Tensor&)> loss = {};
@@ -40,13 +41,13 @@ struct LoopData {
 struct LoopSettings {
   TrainingRecipe recipe;
   std::uint64_t seed = 1;
-  std::filesystem::path checkpoint;          ///< empty: no checkpoints
-  const nlohmann::json* run = nullptr;       ///< identity of the run; a checkpoint of another run is an error
-  double checkpoint_every_s = 30.0;          ///< interval of checkpoints within an epoch [s]
-  double checkpoint_after_epoch_s = 2.0;     ///< at an epoch's end: if the last checkpoint is older [s]
-  std::uint64_t first_draw = 0;              ///< noise draw of the first epoch; each epoch uses the next
-  double gflops = 0.0;                       ///< rate of matrix products [GFLOP/s]; 0: unknown
-  std::function<bool()> stop;                ///< polled before each batch; empty: stop_asked()
+  std::filesystem::path checkpoint;       ///< empty: no checkpoints
+  const nlohmann::json* run = nullptr;    ///< identity of the run; a checkpoint of another run is an error
+  double checkpoint_every_s = 30.0;       ///< interval of checkpoints within an epoch [s]
+  double checkpoint_after_epoch_s = 2.0;  ///< an epoch's end saves one if the last is older than this [s]
+  std::uint64_t first_draw = 0;           ///< noise realisation of the first epoch; each epoch uses the next
+  double gflops = 0.0;                    ///< rate of matrix products [GFLOP/s]; 0: unknown
+  std::function<bool()> stop;             ///< polled before each batch; empty: stop_asked()
   const mpi::items::Ranks* ranks = nullptr;  ///< ranks that train together; null: this process alone
   /// Called on rank 0 with the curve so far, after each epoch and after a resume; may be empty.
   std::function<void(const LearningCurve&)> epoch_done;

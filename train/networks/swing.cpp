@@ -19,8 +19,8 @@ namespace {
 using at::Tensor;
 
 constexpr std::int64_t kIntegralTerms = 6;  ///< integrals per test function (train/data/swing.hpp)
-constexpr int kPasses = 3;                  ///< passes of the solution, because the weights depend on H and D
-constexpr double kBias = 1e-2;              ///< unit of the learned biases
+constexpr int kPasses = 3;      ///< iterations, because the weights depend on the solution H and D
+constexpr double kBias = 1e-2;  ///< unit of the learned biases
 /// Precision of the prior of H and D around the mean of their training targets, in units of the noise
 /// variance. It only keeps the matrix regular.
 constexpr double kPriorPrecision = 1e-2;

@@ -28,8 +28,8 @@ Tensor drawn(std::int64_t in, std::int64_t out) {
   return at::empty({in, out}, at::kFloat).uniform_(-bound, bound).requires_grad_(true);
 }
 
-/// Returns the numbers of the initial posterior: components around the estimate, each about as wide as the
-/// box, without correlation.
+/// Returns the numbers that define the initial posterior: components around the estimate, each about as wide
+/// as the box, without correlation.
 std::vector<float> first_posterior(std::size_t parameters) {
   std::vector<float> all;
   for (std::size_t p = 0; p < parameters; ++p) {
@@ -138,8 +138,8 @@ Tensor Head::loss(const Tensor& numbers, const Tensor& targets) const {
   const Tensor each = parts.log_weight - parts.log_deviation - 0.5 * z.square();
   const Tensor marginal =
       at::logsumexp(each, 2).sum(1) - 0.5 * std::log(constants::turn) * static_cast<double>(p);
-  // The copula is trained on detached scores of the marginal distributions, so that it does not influence
-  // these.
+  // The copula is trained on detached scores of the marginal distributions, so that its loss does not
+  // influence these distributions.
   const Tensor below =
       (parts.log_weight.detach().exp() * 0.5 * at::erfc(z.detach() * -std::sqrt(0.5))).sum(2);
   const Tensor score = std::sqrt(2.0) * at::erfinv(2.0 * below.clamp(kCertain, 1.0 - kCertain) - 1.0);

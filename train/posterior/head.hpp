@@ -28,7 +28,8 @@ class Head final : public networks::Network {
   /// Weights come from torch's generator, which must be seeded before.
   Head(networks::Network& trained, std::int64_t inputs, std::vector<HeadParameter> parameters);
   ~Head() override;
-  /// Returns the numbers of the rows' posteriors: batch x belief_size().
+  /// Returns the numbers that define the rows' posteriors: batch x numbers. Each varying parameter has
+  /// 3 kComponents + kFactors numbers.
   at::Tensor forward(const at::Tensor& x, const networks::StepRows* training) override;
   std::vector<at::Tensor> parameters() override;
   /// Returns the mean negative log density of the true values per parameter, over the logits of their

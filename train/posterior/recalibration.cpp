@@ -20,8 +20,8 @@ const NodeScores& standard() {
   return scores;
 }
 
-/// Interpolates linearly between the points (from, to). Extrapolates with the slope between the first and
-/// third outer point.
+/// Interpolates linearly between the points (from, to). Extrapolates with the slope between the outermost
+/// point and the second point inwards from it.
 double along(const NodeScores& from, const NodeScores& to, double x) {
   const auto slope = [&](std::size_t a, std::size_t b) { return (to[b] - to[a]) / (from[b] - from[a]); };
   if (x <= from.front()) return to.front() + (x - from.front()) * slope(0, 2);

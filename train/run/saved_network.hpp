@@ -68,7 +68,7 @@ class SavedNetwork {
   ~SavedNetwork();
   [[nodiscard]] const NetworkInfo& info() const { return info_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-  /// Returns the identity of the training.
+  /// Returns the identity of the training (data, recipe, seed, software).
   [[nodiscard]] const nlohmann::json& identity() const { return *identity_; }
   /// Returns the training's result and gives up ownership; estimates are no longer possible.
   [[nodiscard]] std::unique_ptr<Trained> release();

@@ -135,8 +135,8 @@ std::string BlasRate::sentence() const {
 }
 
 std::string BlasRate::warning() const {
-  // Kernels for the processor's widest instructions reach 60 % and more. SSE kernels reach 17 % on a
-  // processor with AVX-512 (docs/reference/performance.md).
+  // Kernels for the processor's widest instructions reach at least 60 % of the multiply-add rate. SSE kernels
+  // reach 17 % on a processor with AVX-512 (docs/reference/performance.md).
   constexpr double kLeastOfPeak = 0.4;
   if (share() >= kLeastOfPeak) return "";
   return Problem{

@@ -74,7 +74,7 @@ std::string environment(const char* name) {
 /// Restarts the program. Returns only on failure, with the reason.
 std::string restart(const std::string& asked, const std::string& alone, char** argv) {
   std::error_code error;
-  // The path itself, because `ps` would show /proc/self/exe as the program's name.
+  // Resolves the program's path, because `ps` would show /proc/self/exe as the program's name.
   const auto program = own_executable(error);
   setenv(kAsked, asked.c_str(), 1);
   setenv(kAlone, alone.c_str(), 1);

@@ -18,7 +18,7 @@ struct Processor {
 struct BlasFound {
   std::string core;   ///< kernels reported by the library ("Haswell"); empty: not OpenBLAS
   std::string asked;  ///< OPENBLAS_CORETYPE; empty: not set
-  std::string alone;  ///< the library's own choice before this program requested others; empty: no request
+  std::string alone;  ///< the library's own choice before a request by this program; empty: no request
   static BlasFound here();
 };
 
@@ -26,8 +26,8 @@ struct BlasChoice {
   std::string restart_with;  ///< OPENBLAS_CORETYPE for a restart; empty: no restart
   std::string warning;       ///< a sentence; empty: none
 };
-/// Chooses the widest kernels that the processor can run. If the user requested others, keeps them with a
-/// warning. Throws InputError if the requested kernels need instructions that the processor lacks.
+/// Chooses the widest kernels that the processor can run. If the user requested other kernels, keeps these
+/// with a warning. Throws InputError if the requested kernels need instructions that the processor lacks.
 BlasChoice choose_blas_kernels(const Processor& processor, const BlasFound& found);
 
 /// Returns library, version and kernels as text. If the library did not choose the kernels itself, the text

@@ -20,8 +20,8 @@ int default_threads();
 /// fifth. Throws InputError for a negative number.
 Runtime set_up_runtime(int threads);
 
-/// Rank of this process among those of its launcher (OpenMPI, PMIx or Slurm); 0 of 1 without a launcher. Read
-/// from the environment, so that training does not need MPI.
+/// Rank of this process among the processes of its launcher (OpenMPI, PMIx or Slurm); 0 of 1 without a
+/// launcher. It is read from the environment, so that training does not need MPI.
 struct Place {
   int rank = 0, size = 1;
 };

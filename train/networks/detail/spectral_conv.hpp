@@ -35,8 +35,8 @@ class SpectralPlan {
 };
 
 /// Returns the convolution, length x batch x out, without bias. x: length x batch x in; weight: kernel x in x
-/// out (weight[k][i][o] is Conv1d's weight[o][i][k]). Differentiable in both. As in Conv1d, the extra zero of
-/// an even kernel is on the right.
+/// out (weight[k][i][o] is Conv1d's weight[o][i][k]). Differentiable in x and weight. As in Conv1d, the extra
+/// zero of an even kernel is on the right.
 at::Tensor spectral_conv(const at::Tensor& x, const at::Tensor& weight, const SpectralPlan& plan);
 
 }  // namespace swingbank::train::networks

@@ -13,7 +13,7 @@ namespace swingbank::train::run {
 namespace {
 using nlohmann::json;
 
-constexpr std::uint64_t kPosteriorDraws = 1u << 20;  // first noise draw of the head, after the network's
+constexpr std::uint64_t kPosteriorDraws = 1u << 20;  // first noise realisation of the head, above any epoch
 constexpr std::uint64_t kCalibrationDraw = 2;
 constexpr std::size_t kCalibrationRows = 3000, kOtherRows = 1000, kLevelsAboveZero = 5;
 

@@ -19,7 +19,7 @@ struct RunParts {
   const loop::Score& score;
   std::optional<double> seen_mse = {};  ///< MSE of the validation rows [raw units^2]
   nlohmann::json posterior = {};        ///< null: no posterior
-  nlohmann::json several = {};          ///< null: no such plants
+  nlohmann::json several = {};          ///< null: no plant with three test rows
 };
 nlohmann::json result_json(const PreparedRun& run, const RunParts& parts);
 
