@@ -26,7 +26,7 @@ file(STRINGS CITATION.cff authors REGEX "^  - name: ")
 string(REGEX REPLACE ".*\"(.*)\"" "\\1" CPACK_DEBIAN_PACKAGE_MAINTAINER "${authors}")
 set(same "swingbank (= ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})")
 
-# swingbank_package(component name "synopsis" "description")
+# swingbank_package(component name "synopsis" "description"): declares the package of a component
 macro(swingbank_package component name synopsis description)
   string(TOUPPER ${component} upper)
   list(APPEND CPACK_COMPONENTS_ALL ${component})
@@ -44,7 +44,7 @@ This package contains the commands and the example configs.")
 
 set(CPACK_DEBIAN_SWINGBANK_PACKAGE_SUGGESTS "swingbank-x86-64-v3, swingbank-x86-64-v4")
 
-# debian_levels.cmake adds the components whose programs were built when cpack runs.
+# When cpack runs, debian_levels.cmake removes the components whose programs were not built.
 set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/debian_levels.cmake)
 set(CPACK_SWINGBANK_PROGRAMS ${CMAKE_RUNTIME_OUTPUT_DIRECTORY})
 foreach(level_of "v3;AVX2" "v4;AVX-512")
@@ -76,7 +76,7 @@ if(SWINGBANK_PYTHON_FOUND)
 This package contains the Python package swingbank, which runs the library
 in the interpreter's process.")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
-  math(EXPR next "${Python_VERSION_MINOR} + 1") # the extension works with one minor version only
+  math(EXPR next "${Python_VERSION_MINOR} + 1") # the extension works with one minor version of Python only
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
     "${same}, python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy, python3-h5py")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/debian/postinst

@@ -79,7 +79,7 @@ foreach(component ${CPACK_COMPONENTS_ALL})
     endif()
     file(READ ${file} magic LIMIT 8 HEX)
     if(magic MATCHES "^7f454c46") # ELF
-      # The folders of the build machine are not needed: Debian's libraries are in the search path.
+      # The search path (RPATH) of the build machine is not needed: Debian's libraries are in the default search path.
       file(RPATH_REMOVE FILE ${file})
       execute_process(COMMAND strip --strip-unneeded --remove-section=.comment --remove-section=.note ${file} COMMAND_ERROR_IS_FATAL ANY)
     elseif(magic STREQUAL 213c617263683e0a) # archive

@@ -18,14 +18,14 @@ pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(CRYPTO REQUIRED IMPORTED_TARGET libcrypto)
 
 # HDF5 of the programs without MPI. Debian's serial and parallel builds have the same C interface: hid_t, hsize_t and
-# all functions that mpi/store calls are equal. Their headers differ only in H5pubconf.h. With it, the parallel headers
-# include mpi.h and declare the MPI-IO driver (H5Pset_fapl_mpio). Therefore mpi/store is compiled once, with the serial
-# headers, and each program links one of the two builds (mpi/CMakeLists.txt).
+# all functions that mpi/store calls are equal. Their headers differ only in H5pubconf.h. With the parallel H5pubconf.h,
+# the headers include mpi.h and declare the MPI-IO driver (H5Pset_fapl_mpio). Therefore mpi/store is compiled once, with
+# the serial headers, and each program links one of the two builds (mpi/CMakeLists.txt).
 pkg_check_modules(HDF5_SERIAL hdf5-serial)
 if(NOT TARGET swingbank::hdf5)
   add_library(swingbank::hdf5 INTERFACE IMPORTED GLOBAL)
   if(HDF5_SERIAL_FOUND)
-    # The target of Debian's link, because the folder of the link is in no search path.
+    # Debian's library is a symbolic link; its target is linked, because the folder of the link is in no search path.
     file(REAL_PATH ${HDF5_SERIAL_LINK_LIBRARIES} library)
     target_include_directories(swingbank::hdf5 SYSTEM INTERFACE ${HDF5_SERIAL_INCLUDE_DIRS})
     target_link_libraries(swingbank::hdf5 INTERFACE ${library})

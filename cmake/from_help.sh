@@ -13,7 +13,7 @@ if ! command -v help2man >/dev/null; then
 fi
 rm -rf "$out"
 mkdir -p "$out/man1" "$out/alone" "$out/help"
-# research/ is not installed.
+# Removes the commands of research/, which are not installed.
 "$bin/swingbank" --help | sed '/^Benchmarks:/,/^$/d' >"$out/help/all"
 # Prints the groups' headings and, below each, lines "  name  summary".
 commands() { sed -n 's/^  \([a-z][a-z0-9-]*\)  *\(.*\)/\1\t\2/p' "$out/help/all"; }
@@ -27,7 +27,7 @@ two_spaces() {
       if (line ~ /^  -/ && substr(line, 29, 3) ~ /^[^ ] [^ ]$/) line = substr(line, 1, 29) " " substr(line, 30)
       print line
     }
-    NR > 1 { if (substr($0, 1, 30) ~ /^ +$/) print held; else say(held) } # a meaning on the next line: nothing fills
+    NR > 1 { if (substr($0, 1, 30) ~ /^ +$/) print held; else say(held) } # unchanged: description on the next line
     { held = $0 }
     END { say(held) }' "$1"
 }
@@ -54,7 +54,7 @@ options_of() {
       for (i = 1; i <= count; i++) print command "\t" names[i] "\t" type "\t" choices "\t" meaning
       option = ""
     }
-    # take(PATTERN): cuts what matches off the start of rest, and returns it
+    # take(PATTERN): removes the match of PATTERN from the start of rest, and returns the match
     function take(pattern,    found) {
       if (!match(rest, "^ ?" pattern)) return ""
       found = substr(rest, RSTART, RLENGTH)
@@ -120,7 +120,7 @@ with_template() {
   echo ')'
   echo 'declare -gA _swingbank_choices=('
   awk -F'\t' '$4 != "-" { printf "  [\047%s %s\047]=\047%s\047\n", $1, $2, $4 }' "$out/options"
-  awk -F'\t' '{ printf "  [\047%s %s\047]=\047%s\047\n", $1, $1, $2 }' "$out/words" # behind the command itself
+  awk -F'\t' '{ printf "  [\047%s %s\047]=\047%s\047\n", $1, $1, $2 }' "$out/words" # words after the command itself
   echo ')'
 } | with_template swingbank.bash
 

@@ -1,7 +1,7 @@
-# cmake --install <build folder> [--prefix <folder>]: programs, example configs, documents, man pages and completion, and
-# the library (export.cmake). Components: train (programs of datasets and networks), development, python, v3 and v4
-# (programs for these instruction sets), and swingbank (everything else). The installation builds nothing. It first generates files with the programs (--help, schema), so
-# that nothing is installed if that fails.
+# cmake --install <build folder> [--prefix <folder>]: programs, example configs, documents, man pages and completion,
+# and the library (export.cmake). Components: train (programs of datasets and networks), development, python, v3 and v4
+# (programs for these instruction sets), and swingbank (everything else). The installation builds nothing. It first
+# generates files with the programs (--help, schema), so that nothing is installed if that fails.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME swingbank)
 # The programs are in a separate folder, because bin must not have subfolders (instruction sets).
 set(programs_folder ${CMAKE_INSTALL_LIBEXECDIR}/swingbank)
@@ -13,7 +13,7 @@ foreach(link ${links_of_train})
   string(APPEND commands_of_train " ${name}")
 endforeach()
 
-# swingbank_install_programs(component)
+# swingbank_install_programs(component): installs the programs of a component and their man pages
 function(swingbank_install_programs component)
   get_property(programs GLOBAL PROPERTY SWINGBANK_PROGRAMS_${component})
   get_property(links GLOBAL PROPERTY SWINGBANK_COMMAND_LINKS_${component})
@@ -31,9 +31,9 @@ endif()" COMPONENT ${component})
     # Internal commands have no man page.
     install(FILES ${made}/man1/${name}.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component} OPTIONAL)
   endforeach()
-  # The same programs for wider instruction sets, if jobs/setup.sh --any-processor has built them. The dispatcher
-  # selects the programs for the processor. Those of the component swingbank are components of their own, because each
-  # is as large as the rest of the package.
+  # Installs the same programs for wider instruction sets, if jobs/setup.sh --any-processor has built them. The
+  # dispatcher selects the programs for the processor. For the component swingbank, each wider instruction set is a
+  # separate component, because its programs are as large as the rest of the package.
   foreach(level x86-64-v3 x86-64-v4)
     set(of ${component})
     if(component STREQUAL "swingbank")

@@ -16,7 +16,7 @@ find "$@" -name '*.md' -print0 | xargs -0 perl -0777 -e '
     open(my $in, "<", $file) or die "$file: $!\n";
     my $text = my $before = <$in>;
     my $folder = dirname($file);
-    # [text](target#part): a target with a scheme and a mere #part lead elsewhere
+    # [text](target#part); excludes targets with a scheme and targets that are only a #part, because they are not files
     $text =~ s{(!?)\[([^][]*)\]\((?![a-z]+:|#)([^()\s#]+)(#[^()\s]*)?\)}{-e "$folder/$3" ? $& : plain($2, $3)}ge;
     next if $text eq $before;
     open(my $out, ">", $file) or die "$file: $!\n";

@@ -11,7 +11,7 @@ finish_or_requeue() {
   local status=$1 restarts=$((${SLURM_RESTART_COUNT:-0} + ${SWINGBANK_SEGMENT:-0}))
   ((status > 2)) && retry_elsewhere "$status"
   ((status == 2)) || exit "$status"
-    if [[ $stop_signal == TERM ]]; then # cancelled by a person, or preempted and requeued by Slurm itself
+  if [[ $stop_signal == TERM ]]; then # cancelled by a person, or preempted and requeued by Slurm itself
     echo "saved; stopped by a signal"
     exit "$status"
   fi
@@ -28,12 +28,12 @@ finish_or_requeue() {
     SWINGBANK_SEGMENT=$((${SWINGBANK_SEGMENT:-0} + 1)) follow_up
     exit 0
   fi
-    sleep 60 # requeueing ends this script; if it exited earlier, the job would count as finished
+  sleep 60 # requeueing ends this script; if it exited earlier, the job would count as finished
   exit 1
 }
 
-# retry_elsewhere STATUS: submits the job again after its program was killed or crashed. The input is not the cause; it
-# would give exit code 1.
+# retry_elsewhere STATUS: submits the job again after its program was killed or crashed. Invalid input is not the cause,
+# because it gives exit code 1.
 retry_elsewhere() {
   local retries=${SWINGBANK_RETRY:-0} nodes
   if ((retries >= max_retries)); then
@@ -72,7 +72,7 @@ follow_up() {
     flock 8
     if [[ -z ${SWINGBANK_EXCLUDED:-} ]] ||
       ! id=$(sbatch "${options[@]}" --exclude="$SWINGBANK_EXCLUDED" "$SWINGBANK_SOURCE/slurm/$stage.sbatch"); then
-      id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch") # there may be no other node
+      id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch") # without exclusion, as no other node may exist
     fi
     id=${id%%;*}
     echo "$stage $id" >>"$log/jobs"
@@ -81,7 +81,7 @@ follow_up() {
   echo "it continues as job $id"
 }
 
-# Print the last job of a stage, and all its jobs: the dependencies of the following jobs.
+# `newest` prints the last job of a stage, and `all_of` prints all its jobs. Later jobs depend on these.
 newest() { awk -v stage="$1" '$1 == stage {id = $2} END {print id}' "$SWINGBANK_OUT/log/jobs"; }
 all_of() { awk -v stage="$1" '$1 == stage {printf ":%s", $2}' "$SWINGBANK_OUT/log/jobs"; }
 wait_for_the_new_one() {

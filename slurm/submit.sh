@@ -80,7 +80,7 @@ keep_software() {
   export SWINGBANK_BUILD
 }
 
-# Copies the experiment and every file that it names, for the same reason.
+# Copies the experiment and every file that it names, so that an edit does not change waiting jobs.
 keep_configs() {
   rm -rf "$log/configs"
   SWINGBANK_EXPERIMENT=$("$SWINGBANK_BUILD/bin/swingbank" train --experiment "$SWINGBANK_EXPERIMENT" --keep "$log/configs")
@@ -88,7 +88,7 @@ keep_configs() {
 
 # Job ids of the earlier submission, separated by commas; empty if there was none.
 earlier_jobs() { if [[ -s $log/jobs ]]; then cut -d' ' -f2 "$log/jobs" | paste -sd,; fi; }
-# Those of them that wait or run.
+# Job ids of the earlier submission that wait or run.
 unfinished_jobs() {
   local ids
   ids=$(earlier_jobs)
@@ -156,7 +156,7 @@ submit() {
       "${#queued[@]} jobs before it were cancelled" >&2
     exit 1
   fi
-    id=${id%%;*} # sbatch prints "id;cluster" on federations
+  id=${id%%;*} # sbatch prints "id;cluster" on federations
   echo "$stage $id" | tee -a "$log/jobs"
 }
 
@@ -168,6 +168,6 @@ submit() {
   generated=afterok:$id
   submit fold "$generated" --output="$log/fold-%a.log" --time="$fold_time" "${warning[@]}" \
     --cpus-per-task="$fold_cpus" --mem="$fold_mem" --array="0-$((tasks - 1))%$folds_at_once"
-    # If a fold fails, the tables contain the others.
+  # If a fold fails, the tables contain the other folds.
   submit tables "$generated,afterany:$id" --output="$log/tables.log" --time="$tables_time" --mem="$tables_mem"
 }

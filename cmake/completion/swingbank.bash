@@ -12,7 +12,7 @@ _swingbank() {
   elif [[ $word == -* ]]; then
     words=${_swingbank_options["$command"]-}
   fi
-    # Without matching words, bash completes file names (-o default).
+  # Without matching words, bash completes file names (-o default).
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
 }
 complete -o default -F _swingbank swingbank

@@ -1,6 +1,6 @@
 # fish completion of `swingbank`. from_help.sh writes the lines of the commands and their options.
 # ---
-# Returns whether the words before the cursor, from the second on, begin with the arguments, if there are any.
+# Returns whether the first word after the program name is the argument; without an argument, whether there is no word.
 function __swingbank_words
     set -l words (commandline -opc)[2..-1]
     test (count $argv) -eq 0 -a (count $words) -eq 0
