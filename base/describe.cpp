@@ -79,8 +79,8 @@ struct Consequence {
 };
 
 /// Runs the config-reading function for every outcome of every decision. A decision is a key whose value
-/// changes which keys are read. Its outcomes are tried in the first context (outcomes of other decisions)
-/// that reaches it.
+/// changes which keys are read. Its outcomes are tried in the first context (outcomes of other decisions) in
+/// which the key is read.
 class Explorer {
  public:
   explicit Explorer(const std::function<void(Config&)>& read) : read_(read) {}
@@ -183,7 +183,7 @@ class Explorer {
       asked.push_back(tree.asked());
       any_asked.insert(asked.back().begin(), asked.back().end());
     }
-    // If an outcome does not read a table, its keys are not counted as missing.
+    // If an outcome does not read a table, the keys of that table are not counted as missing.
     const auto always = [&](const KeyPath& path) {
       const KeyPath table = table_of(path);
       for (std::size_t k = 0; k < required.size(); ++k)

@@ -109,7 +109,7 @@ void reserve(const fs::path& file, std::uint64_t bytes) {
   const fs::path temporary = temporary_name(file);
   const Descriptor d(open_new(temporary));
   if (d.get() < 0) raise_file_error(file, errno, "cannot write the file");
-  // posix_fallocate would write every block on file systems without fallocate.
+  // Uses fallocate, because posix_fallocate would write every block on file systems without fallocate.
   const auto ask = [&] { return ::fallocate(d.get(), 0, 0, static_cast<off_t>(bytes)); };
   if (bytes == 0 || until_done(ask) == 0 || errno == EOPNOTSUPP) return;
   const int error = errno;

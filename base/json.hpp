@@ -7,10 +7,10 @@
 #include <utility>
 
 /// Conversion of JSON numbers to integers. The library's own conversion is a cast: 1.5 becomes 1, -1 becomes
-/// 2^64 - 1, true becomes 1, and for 1e95 the behaviour is undefined. This one accepts only an integer that
-/// fits into T, and throws type_error otherwise. All sources and the precompiled headers include this file,
-/// never the library's header alone. Thus every translation unit uses the same conversion, also with clang,
-/// which instantiates templates in precompiled headers.
+/// 2^64 - 1, true becomes 1, and for 1e95 the behaviour is undefined. This conversion accepts only an integer
+/// that fits into T, and throws type_error otherwise. All sources and the precompiled headers include this
+/// file, never the library's header alone. Thus every translation unit uses the same conversion, also with
+/// clang, which instantiates templates in precompiled headers.
 template <class T>
 struct nlohmann::adl_serializer<T, std::enable_if_t<std::is_integral_v<T> && !std::is_same_v<T, bool>>> {
   template <class Json>

@@ -8,7 +8,7 @@ namespace swingbank {
 
 namespace {
 
-constexpr std::size_t kLongestShown = 1000;  ///< largest length of a text that is not cut [bytes]
+constexpr std::size_t kLongestShown = 1000;  ///< length above which a text is cut [bytes]
 
 unsigned at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
 

@@ -76,7 +76,7 @@ int reply_apart(const std::filesystem::path& file, const std::function<std::stri
       (none ? 0 : static_cast<rlim_t>(size / kSlow));
   const rlimit limit{seconds, seconds}, no_core{0, 0};
   ::setrlimit(RLIMIT_CPU, &limit);
-  ::setrlimit(RLIMIT_CORE, &no_core);  // a crash is an expected result
+  ::setrlimit(RLIMIT_CORE, &no_core);  // no core file, because a crash is an expected result
   nlohmann::json problems = nlohmann::json::array();
   try {
     return write_all(STDOUT_FILENO, work()) ? 0 : 1;

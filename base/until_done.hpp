@@ -7,7 +7,7 @@
 
 namespace swingbank {
 
-/// Repeats `call` until it does not fail with EINTR. Returns its result.
+/// Repeats `call` as long as it fails with EINTR. Returns its result.
 template <class Call>
 auto until_done(const Call& call) {
   auto result = call();

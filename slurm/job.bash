@@ -72,7 +72,7 @@ follow_up() {
     flock 8
     if [[ -z ${SWINGBANK_EXCLUDED:-} ]] ||
       ! id=$(sbatch "${options[@]}" --exclude="$SWINGBANK_EXCLUDED" "$SWINGBANK_SOURCE/slurm/$stage.sbatch"); then
-      id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch") # without exclusion, as no other node may exist
+      id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch") # without exclusion: no other node may exist
     fi
     id=${id%%;*}
     echo "$stage $id" >>"$log/jobs"

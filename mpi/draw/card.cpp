@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kCardFormat = "swingbank-card-1";
 
-/// Returns the files that a config names: name in the config and path.
+/// Returns the files that a config names, each with its name in the config and its path.
 std::vector<std::pair<std::string, fs::path>> named_files(const DatasetConfig& config) {
   Config c(config.file);
   std::vector<std::pair<std::string, fs::path>> files = {{c.require<std::string>("raw"), config.raw},

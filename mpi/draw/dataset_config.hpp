@@ -37,8 +37,8 @@ struct DatabankConfig {
 /// [fault]: short circuits of the dataset.
 struct FaultConfig {
   std::vector<int> buses;                 ///< bus numbers; empty: any bus
-  std::vector<int> except;                ///< bus numbers
-  double start = 2.0;                     ///< [s]
+  std::vector<int> except;                ///< numbers of buses that are not faulted
+  double start = 2.0;                     ///< time of the fault [s]
   double shortest = 0.05, longest = 0.2;  ///< duration [s]
   double r = 0.0, x = 0.0;                ///< fault impedance [pu on the network's base]; 0: bolted
   std::uint64_t per_point = 1;            ///< faults simulated for each databank sample
@@ -68,14 +68,14 @@ struct OperatingPointConfig {
   double loading_low = 0.0, loading_high = 0.0;
   /// Fraction of machines that are oversized, and range of the factor that multiplies their base.
   double oversized_share = 0.0, oversized_low = 1.0, oversized_high = 1.0;
-  int lines_out_low = 0, lines_out_high = 0;  ///< lines out of service
+  int lines_out_low = 0, lines_out_high = 0;  ///< number of lines out of service
   [[nodiscard]] bool draws_bases() const { return loading_high > 0.0; }
 };
 
 /// Command-line options that replace values of the config.
 struct Overrides {
   std::optional<std::uint64_t> draws = {}, seed = {}, draws_per_shard = {}, faults_per_point = {};
-  std::optional<double> shard_megabytes = {}, rate = {};  ///< [MB], [1/s]
+  std::optional<double> shard_megabytes = {}, rate = {};  ///< size of a shard [MB]; sampling rate [1/s]
   std::vector<std::string> channels = {};                 ///< subset of the config's channels; empty: all
   bool int16 = false;                                     ///< store records as 16-bit integers
 };
@@ -90,7 +90,7 @@ struct DatasetConfig {
   Vary vary = Vary::one;
   std::vector<int> generators;   ///< bus numbers of the machines that vary
   std::vector<std::string> ids;  ///< machine id at each bus; "": the only machine; empty list: "" for all
-  std::string model;             ///< machine model of these units
+  std::string model;             ///< machine model of the units that vary
   /// Parameters of the machine in the order of its parameter list, then those of other effects, sorted by
   /// slot, effect name and parameter list.
   std::vector<Box> box;

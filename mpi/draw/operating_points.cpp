@@ -84,7 +84,8 @@ bool plausible(const sim::grid::Grid& grid, const sim::grid::Grid& own) {
   }
   for (std::size_t i = 0; i < grid.plants.size(); ++i) {
     const auto& plant = grid.plants[i];
-    // No generator may become a motor. In particular the slack might, because it balances the others.
+    // No generator may become a motor. The slack generator might, because it balances the power of the other
+    // generators.
     if (own.plants[i].generation.real() > 0.0 && plant.generation.real() <= 0.0) return false;
     if (!(plant.mva > 0.0)) return false;
     try {

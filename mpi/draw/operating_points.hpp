@@ -1,7 +1,7 @@
 #pragma once
 // Random operating points of the grid: loads, dispatch, voltage setpoints, lines out of service and machine
-// bases. A block of draws shares one operating point, which is a pure function of (config, block). An
-// unusable operating point is drawn again with the next random-number key.
+// bases. A block of draws (simulated events) shares one operating point, which is a pure function of (config,
+// block). An unusable operating point is drawn again with the next random-number key.
 #include <cstdint>
 #include <memory>
 #include <optional>

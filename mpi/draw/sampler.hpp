@@ -1,5 +1,5 @@
 #pragma once
-// Random draw of a simulation: the varied generator, its parameters and the fault. The draw is a pure
+// Random draw of one simulated event: the varied generator, its parameters and the fault. The draw is a pure
 // function of (config, databank, sample_id).
 #include <vector>
 
@@ -14,7 +14,7 @@ struct Draw {
   sim::batch::Job job;
   std::vector<std::size_t> recorded;  ///< recorded generators, as indices into Study::plants
   std::vector<std::size_t> points;    ///< databank sample of each recorded generator
-  Redrawn redrawn;                    ///< rejected operating points of its block
+  Redrawn redrawn;                    ///< rejected operating points of the draw's block
 };
 
 /// Source of the draws of a study.

@@ -1,5 +1,5 @@
 #pragma once
-// Simulation of a range of draws and arrangement of the records as rows of a shard.
+// Simulation of a range of draws (simulated events) and arrangement of the records as rows of a shard.
 #include <functional>
 #include <map>
 #include <memory>

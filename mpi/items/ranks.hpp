@@ -33,7 +33,7 @@ class Ranks {
   [[nodiscard]] virtual int on_this_machine() const = 0;
   /// Returns the value of rank 0 on all ranks. Collective.
   [[nodiscard]] virtual int from_first(int value) const = 0;
-  /// Replaces the bytes by those of rank 0, the same number on all ranks. Collective.
+  /// Replaces the bytes by those of rank 0. All ranks must pass the same number of bytes. Collective.
   virtual void copy_from_first(std::span<std::byte> bytes) const = 0;
   /// Replaces each value by its sum over the ranks; all ranks get the same sums. Collective.
   virtual void sum(std::span<float> values) const = 0;

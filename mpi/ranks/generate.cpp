@@ -35,7 +35,7 @@ namespace {
 /// a shard.
 constexpr int kLedFrom = 32;
 
-/// Throws InputError if a rank has another config or another kernel variant than rank 0.
+/// Throws InputError if a rank has another config or another variant of the SIMD kernel than rank 0.
 void require_one_variant(MPI_Comm world, const std::string& hash, const std::string& kernel) {
   int rank;
   MPI_Comm_rank(world, &rank);

@@ -135,7 +135,7 @@ bool ItemRanks::share_items(const items::SharedItems& shared) const {
     return from_first(complete ? 1 : 0) != 0;
   } catch (const std::exception& error) {
     if (size() == 1) throw;
-    end_all_ranks(error.what());  // the others would wait forever
+    end_all_ranks(error.what());  // the other ranks would wait forever
   }
 }
 

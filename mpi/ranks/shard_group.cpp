@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Time after which a failed rank prints its reason if the others have not responded [s]. It is short, so
-/// that no other time limit, such as that of a lease, ends the run first.
+/// Time after which a failed rank prints its reason if the other ranks have not responded [s]. It is short,
+/// so that no other time limit, such as that of a lease, ends the run first.
 constexpr double kReportAfter = 1.0;
 /// Further time after which the failed rank ends all ranks [s].
 constexpr double kOthersMayTake = 19.0;
@@ -53,8 +53,8 @@ std::vector<T> gather(MPI_Comm group, const std::vector<T>& mine, int size) {
   return all;
 }
 
-/// Returns the file-access property list for MPI-IO, or the default list for a single rank. Both write the
-/// same bytes.
+/// Returns the file-access property list for MPI-IO, or the default list for a single rank. HDF5 writes the
+/// same bytes with both lists.
 store::h5::Handle access_list(MPI_Comm group, int size) {
   if (size == 1) return {};
   store::h5::Handle list(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
@@ -188,7 +188,7 @@ ShardReceipt write_shard(const fs::path& file, const store::ShardData& part, MPI
     }
     throw;
   }
-  MPI_Bcast(&bytes, 1, MPI_UINT64_T, 0, group);  // on NFS, other nodes may not see the new name yet
+  MPI_Bcast(&bytes, 1, MPI_UINT64_T, 0, group);  // from rank 0: on NFS, other nodes may not see the file yet
   const auto hashes = gather(group, own_hashes, size);
   return {rows, ids.size(), bytes, store::shard_hash(hashes, ids, outcomes, redrawn), file_hash};
 }

@@ -21,7 +21,7 @@ struct DatasetHeader {
   ///< 16 hex digits; Batch::variant(); "swingbank 0.2.0"; "GENROU"
   std::string config;  ///< the config in canonical form
   std::uint64_t seed = 0, draws = 0, draws_per_shard = 0;
-  ///< seed of the random draws; number of draws in total; number of draws of a full shard
+  ///< seed of the random numbers; number of draws (simulated events); number of draws of a full shard
   double rate = 0.0;          ///< sampling rate [1/s]
   std::uint64_t samples = 0;  ///< samples per channel and row
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;

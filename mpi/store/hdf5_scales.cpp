@@ -77,7 +77,7 @@ void File::attach_scales(const std::vector<Axes>& all) {
     std::vector<hobj_ref_t> references;
     for (const auto& scale : scales) {
       ScaleUse use;
-      std::memset(&use, 0, sizeof use);  // padding is written too
+      std::memset(&use, 0, sizeof use);  // also clears the padding, which is written to the file
       use.array = of_array;
       use.axis = static_cast<std::int32_t>(references.size());
       uses[scale].push_back(use);

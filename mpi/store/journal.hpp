@@ -12,7 +12,7 @@
 
 namespace swingbank::mpi::store {
 
-/// Entry of a finished shard.
+/// Entry of a finished shard. A draw is one simulated event.
 struct JournalLine {
   std::uint64_t shard = 0;                        ///< number in the dataset
   std::string file;                               ///< relative to the dataset folder

@@ -16,7 +16,7 @@ struct ShardAttributes {
   std::string config_hash;    ///< 16 hex digits
   std::string kernel;         ///< Batch::variant()
   std::string software;       ///< "swingbank 0.2.0"
-  std::uint64_t seed = 0;     ///< seed of the dataset's random draws
+  std::uint64_t seed = 0;     ///< seed of the dataset's random numbers
   std::uint64_t shard = 0;    ///< number of the shard in its dataset
   double rate = 0.0;          ///< sampling rate [1/s]
   std::string machine_model;  ///< "GENROU"
@@ -47,7 +47,7 @@ struct RowBlock {
 /// Content of a shard.
 struct ShardData : RowBlock {
   ShardAttributes attributes;                 ///< attributes of the root group
-  std::vector<std::uint64_t> draw_sample_id;  ///< every draw of the shard, stable or not
+  std::vector<std::uint64_t> draw_sample_id;  ///< every draw (simulated event) of the shard, stable or not
   std::vector<std::uint8_t> draw_outcome;     ///< outcome of every draw, 0 ... kRefused
   /// draws x kRedrawnColumns: rejected operating points of the draw's block; empty without operating points.
   std::vector<std::int32_t> draw_redrawn;

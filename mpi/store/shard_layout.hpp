@@ -8,7 +8,7 @@ namespace swingbank::mpi::store {
 constexpr const char* kShardFormat = "swingbank-shard-1";  ///< records as float32
 constexpr const char* kInt16Format = "swingbank-shard-2";  ///< records as 16-bit integers
 
-/// Numbers of rows and draws in the whole file, summed over all writers.
+/// Numbers of rows and draws (simulated events) in the whole file, summed over all writers.
 struct ShardSize {
   std::uint64_t rows, draws;  ///< numbers of rows and draws
 };

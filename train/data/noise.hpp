@@ -12,8 +12,8 @@
 
 namespace swingbank::train::data {
 
-/// Distribution of the noise level of training rows: 0 for the share `share_at_zero`, log-uniform in [low,
-/// high] for the others.
+/// Distribution of the noise level of training rows: 0 for the fraction `share_at_zero` of the rows,
+/// log-uniform in [low, high] for the other rows.
 struct NoiseLevels {
   double low = 0, high = 0, share_at_zero = 0;
 };

@@ -42,8 +42,8 @@ class ShardStream {
   ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {},
               const std::optional<mpi::store::Dataset>& more = {});
 
-  /// Gets the shards of the dataset that `header` describes from `next` instead of from disk. Keeps labels
-  /// and series and discards the shards. The stream equals that of the same dataset read from disk. Throws
+  /// Takes the shards from `next` instead of from disk. `header` describes their dataset. Keeps labels and
+  /// series and discards the shards. The stream equals that of the same dataset read from disk. Throws
   /// InputError if the series exceed the memory limit.
   ShardStream(const mpi::store::DatasetHeader& header, const std::function<mpi::store::ShardData()>& next,
               const InputRecipe& recipe, const StreamOptions& options = {});
@@ -99,7 +99,7 @@ class ShardStream {
 
   mpi::store::Dataset dataset_;
   std::optional<mpi::store::Dataset> more_;
-  std::vector<mpi::store::ShardInfo> shards_;  ///< of both datasets, with consecutive row numbers
+  std::vector<mpi::store::ShardInfo> shards_;  ///< shards of both datasets, with consecutive row numbers
   std::size_t rows_ = 0;
   bool from_memory_ = false;
   InputSelection selection_;

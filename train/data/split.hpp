@@ -30,9 +30,9 @@ struct LeaveOneOut {
   std::optional<std::int32_t> judged = {};
   std::size_t set_aside = 0;  ///< number of generators for recalibration
 };
-/// Returns the split whose test rows are all rows of one generator. Of the other generators' databank
-/// samples, `validation_share` is for validation and the rest for training, except for the generators set
-/// aside. Throws InputError if the generator has no rows or is the only one.
+/// Returns the split whose test rows are all rows of one generator. The rows of the generators set aside are
+/// for recalibration. Of the remaining generators' databank samples, `validation_share` is for validation and
+/// the rest for training. Throws InputError if the generator has no rows or is the only one.
 RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan);
 /// Returns the split whose test rows are the whole dataset. Of the databank samples of the training-only
 /// rows, `validation_share` is for validation and the rest for training. Throws InputError if one of the

@@ -23,7 +23,7 @@ constexpr double kVoltageStep = 0.03, kNoiseSteps = 9;
 /// Number of samples after a voltage step that the integrals omit, because the step occurs within a sampling
 /// interval.
 constexpr std::size_t kAfterStep = 2;
-constexpr double kVoltageFloor = 0.1;  ///< lower limit of V as a divisor: noise dominates below [pu]
+constexpr double kVoltageFloor = 0.1;  ///< lower limit of V as a divisor: noise dominates below it [pu]
 
 /// Value, first and second derivative of a function of time.
 using Derivatives = std::array<double, 3>;

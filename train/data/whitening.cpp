@@ -15,7 +15,7 @@ namespace {
 using Eigen::Index;
 constexpr std::size_t kRowsToFit = 8000;  ///< about fifteen times the number of fitted components
 constexpr std::size_t kRowsOfWidths = 5000;
-/// Distance of the 10 % and 90 % quantiles of a normal distribution, in standard deviations.
+/// Distance between the 10 % and 90 % quantiles of a normal distribution, in standard deviations.
 constexpr float kMiddleInDeviations = 2.56f;
 constexpr float kStillRow = 1e-6f;  ///< added to a row's size, which is 0 for a constant row [pu]
 constexpr double kRank = 1e-9;      ///< relative variance up to which a component is rounding error

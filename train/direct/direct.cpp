@@ -19,7 +19,7 @@ namespace {
 
 namespace store = mpi::store;
 constexpr double kWeights = 1e-4;       ///< noise level that determines channel weights without noise
-constexpr double kNoPrior = 1e3;        ///< prior deviation, in widths of the box
+constexpr double kNoPrior = 1e3;        ///< standard deviation of a prior without influence [box widths]
 constexpr std::size_t kRowsRead = 512;  ///< rows read at once
 enum class Method { closed_form, refined, curve_fit, floor };  ///< in order of kMethods
 

@@ -16,7 +16,7 @@ namespace swingbank::train::loop {
 /// Training settings of a network.
 struct TrainingRecipe {
   std::size_t epochs = 0, batch = 0;
-  double learning_rate = 0.0;     ///< of Adam
+  double learning_rate = 0.0;     ///< learning rate of Adam
   std::string schedule;           ///< "constant", or "cosine": short warm-up, then decay to 1 %
   std::size_t patience = 0;       ///< epochs without improvement before stopping
   double validation_share = 0.0;  ///< fraction of the training generators' databank samples for validation
@@ -65,7 +65,7 @@ struct Task {
   std::string network;
   double noise = 0.0;
   std::string fold;    ///< bus number of the left-out generator; "none": no leave-one-out split
-  double share = 1.0;  ///< share of the training rows
+  double share = 1.0;  ///< fraction of the training rows that is used
 };
 
 /// Keys of Experiment::print. "training_rows": networks that also train on the training dataset. "tasks":

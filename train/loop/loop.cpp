@@ -400,7 +400,7 @@ class Loop {
   Tensor loss_weights_;
   std::int64_t outputs_ = 0;
   std::size_t batches_ = 0;
-  double operations_per_row_ = 0.0;  // of the matrix products of a step; 0: not counted
+  double operations_per_row_ = 0.0;  // operations of matrix products; 0: not counted
   double rate_ = 0.0;                ///< learning rate of the last step
   LearningCurve curve_;
   Position at_;

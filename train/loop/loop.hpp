@@ -33,7 +33,7 @@ struct LoopData {
   std::span<const float> targets;                    ///< scaled targets, all rows of the dataset x outputs
   /// Estimates to correct, all rows x outputs [scaled]; they are appended to the features.
   std::span<const float> guesses = {};
-  std::span<const float> weights = {};  ///< of the outputs' squared errors, with mean 1; empty: equal
+  std::span<const float> weights = {};  ///< weights of the outputs' squared errors, mean 1; empty: equal
   /// Scalar loss of outputs and scaled targets; empty: weighted mean squared error.
   std::function<at::Tensor(const at::Tensor&, const at::Tensor&)> loss = {};
 };

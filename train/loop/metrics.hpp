@@ -27,7 +27,7 @@ struct Score {
 
 struct ScoreInput {
   std::span<const double> predicted, truth;  ///< rows x parameters, raw units
-  std::span<const double> training_mean;     ///< parameters
+  std::span<const double> training_mean;     ///< one value per parameter
   std::vector<std::string> names, units;
   std::vector<double> low, high;  ///< the sampling box
 };

@@ -103,7 +103,7 @@ class Swing final : public Network {
     const Tensor by_D = share * term(3) + (1 - share) * term(1);
     const Tensor by_H = -2 * (derivative * term(4) + (1 - derivative) * term(2));
     const Tensor y = term(0);
-    // The third column is that of the error of P0, which is the same for all test functions of a record.
+    // The third column belongs to the error of P0, which is the same for all test functions of a record.
     const Tensor X = at::stack({by_H, by_D, term(5)}, 2);
     const Tensor variance = level.square(), zero = at::zeros_like(level);
     const double mean_H = mean(H_), mean_D = mean(D_);

@@ -24,9 +24,9 @@ struct RunRequest {
   std::optional<std::int32_t> judged;     ///< generator tested instead of `generator`; also left out
   std::uint64_t seed = 1;
   std::optional<std::size_t> epochs;     ///< overrides the preset's value
-  double noise = 0;                      ///< noise level; the stream must have the same
+  double noise = 0;                      ///< noise level; must equal that of the stream
   std::optional<std::size_t> test_rows;  ///< approximate number of rows, evenly spaced; none: all
-  double train_share = 1.0;              ///< share of the training rows
+  double train_share = 1.0;              ///< fraction of the training rows that is used
   bool shuffle_labels = false;
   bool any_maker = false;    ///< accept results of other software or kernels
   bool save_network = true;  ///< write the network beside the result, except for a control run

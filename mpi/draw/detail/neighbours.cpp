@@ -14,7 +14,7 @@ constexpr std::size_t kAxes = 4;     ///< largest number of gridded axes; a sear
 constexpr double kWorthwhile = 3.0;  ///< minimum width of a gridded axis, as a multiple of the distance
 constexpr unsigned kBits = 16;       ///< bits of a cell number per axis
 constexpr int kPointsAtOnce = 8;     ///< points per block
-constexpr std::size_t kEarlyTestAxes = 4;  ///< axes after which a block is tested for early rejection
+constexpr std::size_t kEarlyTestAxes = 4;  ///< number of axes before a block's test for early rejection
 using Block = sim::Pack<kPointsAtOnce>;
 
 bool any_below(Block sums, double limit) { return any_positive(Block(limit) - sums); }

@@ -100,7 +100,8 @@ void clear_leftovers(const fs::path& folder, const store::Part& part, std::uint6
   if (part.all()) {
     std::vector<fs::path> leftovers;
     for (const auto& entry : fs::recursive_directory_iterator(folder / "shards")) {
-      // Only files of this name pattern, because the folder may be a link to a folder with other files.
+      // Removes only files of this name pattern, because the folder may be a link to a folder with other
+      // files.
       const std::string name = entry.path().filename().string();
       if (name.starts_with(".shard-") && name.ends_with(".h5.part")) leftovers.push_back(entry.path());
     }

@@ -13,8 +13,8 @@
 namespace swingbank::mpi::ranks {
 
 namespace {
-/// Creates a folder and flushes its entry to the disk, so that it is durable before the journal lists a shard
-/// in it.
+/// Creates a folder and flushes its entry to the disk, so that the folder is durable before the journal lists
+/// a shard in it.
 void make_durable_folder(const std::filesystem::path& folder) {
   if (std::filesystem::exists(folder)) return;
   make_folder(folder);

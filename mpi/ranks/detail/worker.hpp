@@ -1,6 +1,6 @@
 #pragma once
 // Worker: a rank of a group that generates leased shards one after the other. Each rank simulates a part of a
-// shard's draws, and all ranks write the shard together through the MPI-IO driver.
+// shard's draws (simulated events), and all ranks write the shard together through the MPI-IO driver.
 #include <functional>
 
 #include "mpi/draw/shard_maker.hpp"

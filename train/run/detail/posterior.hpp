@@ -25,7 +25,7 @@ std::vector<posterior::Recalibration> maps_at(const std::vector<LevelMaps>& leve
 
 struct Posterior {
   std::unique_ptr<posterior::Head> head;  ///< nullptr: no posterior
-  std::vector<LevelMaps> levels;          ///< ascending
+  std::vector<LevelMaps> levels;          ///< in ascending order of level
 };
 
 /// Result of a training.
