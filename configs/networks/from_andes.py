@@ -91,7 +91,7 @@ def raw(case, model, bases, titles):
 
 
 def dyr(case, model):
-    """Text of the .dyr file."""
+    """Returns the text of the .dyr file."""
     lines = []
     for bus in sorted(case["machines"], key=int):
         p = case["machines"][bus]["params_machine_base"]
