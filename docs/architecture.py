@@ -3,7 +3,7 @@
 
   python3 docs/architecture.py [--check]    --check changes nothing and exits with 1 if the drawing is out of date
 
-Each module is one layer above the highest module that it uses. Arrows that follow from others are omitted.
+Each module is one layer above the highest module that it uses. Arrows that follow from other arrows are omitted.
 The modules of a layer are ordered by the barycentre method of Sugiyama, Tagawa and Toda, IEEE Trans. SMC 11 (1981) 109.
 """
 import functools

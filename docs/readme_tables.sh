@@ -4,8 +4,8 @@
 #     --check  changes nothing; exits with 1 and names each README that is out of date
 # Between `<!-- uses -->` and `<!-- end of uses -->`: the modules named in its swingbank_module() line.
 # Between `<!-- files -->` and `<!-- end of files -->`: one row per file, for each header and for each source without a
-# header of its name. A row contains the first sentence of the file's head comment, or an effect's name and title. The
-# order of the rows does not change, because it is that of the data flow. New files are appended, deleted ones removed.
+# header of the same name. A row contains the first sentence of the file's head comment, or an effect's name and title.
+# The order of the rows follows the data flow, so the script keeps it. New files are appended, deleted ones removed.
 # shellcheck disable=SC2016 # backticks are Markdown here
 set -euo pipefail
 shopt -s nullglob

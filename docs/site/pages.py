@@ -50,7 +50,7 @@ def is_picture(path):
 
 
 def outside_fences(lines):
-    """Yields each line with whether it is outside fenced code."""
+    """Yields each line, and whether this line is outside fenced code."""
     fence = ""
     for line in lines:
         mark = FENCE.match(line)
@@ -77,7 +77,7 @@ class Site:
                 self.texts[path] = self.read(path, waiting)
 
     def read(self, path, waiting):
-        """Returns the page with links to files of the site; appends the pages it links to."""
+        """Returns the page with links to files of the site, and appends the linked pages to `waiting`."""
         text = (ROOT / path).read_text(encoding="utf-8") if is_page(path) else page_of_source(path)
         if path.endswith((".md", ".ipynb")):
             lines = []
