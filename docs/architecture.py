@@ -105,7 +105,7 @@ def width(node):
 
 
 def place(layer, wanted):
-    """Returns positions without overlap, nearest to the wanted ones in least squares (pooling of adjacent nodes)."""
+    """Returns positions without overlap, nearest to the wanted positions in least squares (pooling of adjacent nodes)."""
     offsets, offset = [], 0.0
     for i, node in enumerate(layer):
         offset += (width(layer[i - 1]) + width(node)) / 2 + GAP if i else 0.0
