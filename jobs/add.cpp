@@ -36,7 +36,7 @@ struct Arguments {
   std::optional<fit::Fit> fitted;  ///< result of the fit, once it has ended
 };
 
-/// Adds parameters, use of the events and evidence of one addition to a page.
+/// Adds the result of one addition to the page: parameters, held-out events and evidence of each effect.
 void say_on(compare::CommandPage& page, const add::Addition& added) {
   const auto rows = jobs::page_parameters(added.parameters, added.model.plant);
   page.parameters.assign(rows.begin(), rows.end());
@@ -50,12 +50,12 @@ void say_on(compare::CommandPage& page, const add::Addition& added) {
                                      thresholds::addition.strong.value,
                                      added.earns ? "accepted" : "not accepted"));
 }
-/// Returns "added" and what remains in the events.
+/// Returns "added" with the content of the residual, such as ": only noise remains".
 std::string added_text(bool adequate, const compare::CommandPage& page, const compare::Played& played) {
   if (!adequate) return "added: errors remain";
   return "added" + compare::remainder_text(compare::remainder_of(played, page.noise_alone));
 }
-/// Returns whether every event is within the limit of noise alone.
+/// Returns whether the residuals of all events are within the noise limit.
 bool is_noise(const add::Addition& added) {
   return std::ranges::all_of(added.events, [](const auto& e) { return e.score.is_noise(); });
 }

@@ -28,11 +28,11 @@ struct AnalysisOptions {
   bool json = false, verbose = false, measured_states = true;
   int threads = -1;  ///< 0: one per core; -1: option absent
   double step_threshold = validate::switching::kStepThreshold;
-  double pre_event = validate::event::FitEventOptions{}.pre_event;  ///< [s]
+  double pre_event = validate::event::FitEventOptions{}.pre_event;  ///< length of the steady-state window [s]
   double prior_sd = validate::thresholds::parameters.prior_sd;      ///< prior standard deviation, relative
   Reading reading;
   Judging judging;
-  std::vector<std::pair<std::string, const sim::Effect*>> user_models;  ///< user-defined models, by file
+  std::vector<std::pair<std::string, const sim::Effect*>> user_models;  ///< file and user-defined model
 
   /// Declares the options. `files`: names of the files in --out, for the help. Returns the options that
   /// concern a single plant; they are invalid if the command processes a grid or a fleet.

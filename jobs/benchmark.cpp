@@ -41,8 +41,8 @@ plant::PlantModel load(const std::string& file, const Arguments& a) {
   return model;
 }
 
-/// Returns "bus 2 (manufacturer.toml)". The file name distinguishes two models of a plant, which have the
-/// same name.
+/// Returns "bus 2 (manufacturer.toml)". The file name distinguishes two models of one plant, because both
+/// have the plant's name.
 std::string named(const plant::PlantModel& model) {
   return fmt::format("{} ({})", model.name, std::filesystem::path(model.origin).filename().string());
 }
@@ -56,8 +56,8 @@ std::vector<record::Record> read_inputs(const benchmark::TestSet& set, plant::Pl
     if (!t.record.empty() && std::ranges::count(files, t.record.string()) == 0)
       files.push_back(t.record.string());
   const check::Preparing columns = a.reading.apply(model, files);
-  // A record is checked together with the reference steps of its tests, because these change P and Q without
-  // a change of the voltage.
+  // A record is checked together with the steps of Vref or Pref in its tests, because these steps change P
+  // and Q without a change of the voltage.
   const auto prepare = [&](record::Record r) {
     for (const auto& t : set.tests)
       if (benchmark::is_reference_step(t.kind) && record::Source(t.record).name == r.name && r.staged.empty())

@@ -62,8 +62,8 @@ std::string next_command(const Arguments& a, bool adequate) {
                      a.of.inputs());
 }
 
-/// Writes the model to `kModel` with its .dyr records, or to `kBiasedModel` if it is not adequate (`adequate`
-/// is false). Returns the lines for the terminal.
+/// Writes an adequate model and its .dyr records to `kModel`, and an inadequate model to `kBiasedModel` with
+/// a warning at the file's head. Returns the lines for the terminal.
 std::string write_model(const Arguments& a, plant::PlantModel before, plant::PlantModel model, bool adequate,
                         const std::vector<std::string>& provenance) {
   before = event::whole_model(std::move(before));
@@ -90,7 +90,7 @@ struct Calibrated {
   const plant::PlantModel& model;
   bool adequate;
   const std::string& sentence;
-  std::string report, comparison = {};  ///< text on the fit; on the comparison with other methods
+  std::string report, comparison = {};  ///< text on the fit, and on its comparison with the other method
   std::vector<std::string> provenance;  ///< comment at the head of the model file
   std::vector<fit::FittedParameter> parameters;
   nlohmann::json json;

@@ -26,7 +26,7 @@ CLI::Validator number_that(bool (*accepts)(double), const std::string& name, con
           name};
 }
 
-/// Options that had another name in version 0.1, with the present name.
+/// Option names of version 0.1, each with its present name.
 const std::map<std::string, std::string> kFormerNames = {{"--drive", "--playback"},
                                                          {"--fewest", "--sparse"},
                                                          {"--jump-threshold", "--step-threshold"},
@@ -74,8 +74,8 @@ class GroupedHelp : public CLI::Formatter {
     }
     return text + "\n" + make_footer(app);
   }
-  /// Omits the list of excluded options, which may be long; the error message names the excluded options that
-  /// were given. Keeps the dots ("...") only if one mention of the option accepts several values.
+  /// Omits the possibly long list of excluded options, because the error message names those that were given.
+  /// Keeps the dots ("...") only if one mention of the option accepts several values.
   std::string make_option_opts(const CLI::Option* option) const override {
     std::string text = CLI::Formatter::make_option_opts(option);
     constexpr std::string_view kSeveral = " ...";
@@ -112,8 +112,8 @@ struct CommandLine::Parser {
       if (option->get_positional()) all += (all.size() == none ? " except " : ", ") + option->get_name(true);
     return all;
   }
-  /// Returns an error for each argument that is neither an option nor a value of one, in the order given.
-  /// Arguments after an unknown option count as its values.
+  /// Returns an error for each argument that is neither a known option nor an option's value, in the given
+  /// order. Arguments after an unknown option count as its values.
   [[nodiscard]] std::vector<std::string> not_expected() const {
     std::vector<std::string> sentences;
     bool value = false;

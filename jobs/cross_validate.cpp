@@ -1,5 +1,6 @@
-// swingbank cross-validate: leave-one-generator-out cross-validation (Tables V and VI). Processes started by
-// mpirun or srun share the folds. A task of a Slurm job array trains one fold (--fold).
+// swingbank cross-validate: leave-one-generator-out cross-validation (the thesis's Tables V and VI).
+// Processes started by mpirun or srun divide the folds among them. A task of a Slurm job array trains one
+// fold (--fold).
 #include "train/run/cross_validate.hpp"
 
 #include "jobs/training_options.hpp"
@@ -33,7 +34,8 @@ int train_folds(const train::data::ShardStream& stream, train::run::RunRequest r
     return 1;
   }
 }
-/// Trains the folds and scores them on generators other than the one left out (--judge-on).
+/// Trains each fold once for every generator of --judge-on except the fold's own. That generator is also
+/// excluded from the training, and the network is scored on it.
 int train_nested(const train::data::ShardStream& stream, train::run::RunRequest request,
                  const std::vector<std::int32_t>& folds, const std::string& judged, int threads) {
   for (const std::int32_t fold : folds)

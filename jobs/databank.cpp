@@ -1,5 +1,5 @@
-// swingbank databank: draws the parameter sets of a dataset's databank, writes them, and prints the shares of
-// rejected candidates by reason.
+// swingbank databank: draws the parameter sets of a dataset's databank, writes them, and prints the
+// percentage of candidates that was rejected for each reason.
 #include "mpi/draw/databank.hpp"
 
 #include <fmt/format.h>

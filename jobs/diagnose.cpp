@@ -95,7 +95,8 @@ int run(Command& c) {
   return played.back().fitness.exit_code(adequate);
 }
 
-/// Diagnoses one plant of the fleet in this process and prints {"was_there", "row"} to standard output.
+/// Diagnoses one plant of the fleet in this process. Prints JSON to standard output: whether an earlier run
+/// had diagnosed the plant ("was_there"), and the plant's row of the table ("row").
 int diagnose_fleet_plant(const jobs::FleetCommand& c, const std::string& name) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends with its rank, so that it does not write during the next run
   catch_stop_signals();                // disables interruption points

@@ -132,8 +132,8 @@ struct Reading {
   }
 };
 
-/// Prints a note for each staged event that applies to none of these records: it belongs to another test, or
-/// its record's name is misspelled.
+/// Prints a note for each staged event that applies to none of these records, because it belongs to another
+/// test or its record's name is misspelled.
 inline void note_unused_events(const std::vector<std::string>& files,
                                const std::vector<validate::record::StagedEvent>& staged) {
   if (quiet) return;

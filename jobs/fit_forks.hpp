@@ -25,11 +25,11 @@ class FitProcess {
   int socket_;
 };
 
-/// Factory of such processes: a copy of this process, forked before this process starts threads. The copy
+/// Factory of fit processes: a copy of this process, forked before this process starts threads. The copy
 /// forks once more for every fit.
 class FitForks {
  public:
-  /// Work of a process; it receives the request and a function that sends messages.
+  /// Function that a fit process executes. Its arguments are the request and a function that sends messages.
   using Work = std::function<void(const nlohmann::json& request,
                                   const std::function<void(const nlohmann::json&)>& send)>;
   /// Forks the copy. No other thread may run, and this thread must not have used OpenMP.

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace validate;
 
-constexpr double kLongerThanItsProgram = 60.0;  ///< margin of a rank's time limit over that of its plant [s]
+constexpr double kLongerThanItsProgram = 60.0;  ///< rank's time limit per plant minus --plant-timeout [s]
 
 std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
   make_folder(folder);
@@ -32,8 +32,8 @@ std::unique_ptr<RunLock> lock_folder(const fs::path& folder) {
       std::chrono::milliseconds(0));
 }
 
-/// Diagnoses a plant in a child process (swingbank diagnose --plant). Returns its output, or a row "failed"
-/// if there is none.
+/// Diagnoses a plant in a child process (swingbank diagnose --plant). Returns its JSON output, or a row with
+/// the verdict "failed" if the process gives none.
 std::string plant_result(const FleetCommand& c, const fleet::FleetPlant& plant, int threads) {
   const auto failed = [&](const std::string& why) {
     return nlohmann::json{{"was_there", false}, {"row", fleet::row_json(fleet::failed_row(plant.name, why))}}

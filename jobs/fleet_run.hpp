@@ -20,13 +20,13 @@ struct FleetCommand {
 
 /// Declares the options of `swingbank diagnose-fleet`, which runs a fleet under a launcher.
 void declare_fleet(CommandLine& line, FleetCommand& command);
-/// Returns the command as arguments of these options.
+/// Returns the arguments of `swingbank diagnose-fleet` that pass on these options.
 std::vector<std::string> fleet_words(const FleetCommand& command);
 
 /// Diagnoses every plant on the ranks and prints the table. Each plant is diagnosed by a process
 /// `swingbank-diagnose --plant` of this program's folder, which prints {"was_there", "row"}. Returns the exit
-/// code, the same on all ranks. 0: all plants are complete; 3: a plant is not; 1: a plant failed or the input
-/// is invalid; 2: stop signal.
+/// code, the same on all ranks. 0: all plants are complete; 1: a plant failed or the input is invalid; 2:
+/// stop signal; 3: some plant is not complete.
 int run_fleet(const FleetCommand& command, const mpi::items::Ranks& ranks);
 
 }  // namespace swingbank::jobs

@@ -28,7 +28,7 @@ namespace {
 
 struct Command {
   std::string config, part, again;
-  int mode = 0;  ///< index into Progress::words()
+  int mode = 0;  ///< --progress, as an index into Progress::words()
   mpi::draw::Overrides overrides;
   mpi::ranks::GenerateOptions options;
 };
@@ -103,7 +103,8 @@ mpi::store::Part part_of(const std::string& text) {
   return part;
 }
 
-/// Temporary folder with the files of a card. Each rank has its own.
+/// Temporary folder with the config and input files of a dataset card (mpi/draw/card.hpp). Each rank has its
+/// own.
 class Unpacked {
  public:
   explicit Unpacked(const mpi::draw::Card& card) {
@@ -124,8 +125,8 @@ class Unpacked {
   std::filesystem::path folder_;
 };
 
-/// Throws InputError if config hash or kernel variant differ from those of the card: the dataset would
-/// differ.
+/// Throws InputError if config hash or kernel variant differ from those of the card, because the dataset
+/// would then differ too.
 void require_card_kept(const mpi::draw::Card& card, const mpi::draw::DatasetConfig& config) {
   const std::string kernel = mpi::draw::kernel_variant(mpi::draw::load_study(config));
   if (mpi::draw::config_hash(config, kernel) == card.config_hash) return;
@@ -170,7 +171,7 @@ int run(const Command& c, bool first) {
   return code;
 }
 
-/// Parses the command line on all ranks; their arguments may differ. If any rank was asked for help or has an
+/// Parses the command line on all ranks, whose arguments may differ. If any rank was asked for help or has an
 /// invalid option, returns the exit code, the same on all ranks. Otherwise returns nothing.
 std::optional<int> parse(jobs::CommandLine& line, int argc, char** argv,
                          const mpi::ranks::MpiSession& session) {

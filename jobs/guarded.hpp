@@ -29,8 +29,8 @@ inline std::string problems_text(const InputError& error) {
   return text;
 }
 
-/// Runs `action` and returns its exit code. Prints an exception as an error message and returns 1; returns 2
-/// after a stop signal before any result.
+/// Runs `action` and returns its exit code. Prints an exception as an error message and returns 1. Returns 2
+/// if a stop signal ended the action before any result.
 template <class F>
 int guarded(const std::string& command, F action) {
   try {

@@ -16,8 +16,8 @@ class ItemProgress {
  public:
   /// `unit`: name of the items, for example "plants".
   ItemProgress(std::string unit, std::size_t total) : unit_(std::move(unit)), total_(total) {}
-  /// Counts one finished item and prints a line. `was_there`: an earlier run had finished the item; it then
-  /// does not count in the rate.
+  /// Counts one finished item and prints a line. `was_there`: an earlier run had finished the item, which
+  /// therefore does not count in the rate.
   void line(const std::string& text, bool was_there) {
     ++done_;
     if (!was_there) ++made_;

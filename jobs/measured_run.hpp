@@ -10,7 +10,7 @@
 
 namespace swingbank::sim {
 
-/// Run as `simulate` writes it. `frequency` is empty if no instrument measured the run.
+/// Simulated run in the form that `simulate` writes. `frequency` is empty if no instrument measured the run.
 struct MeasuredRun : reference::ReferenceRun {
   std::vector<std::vector<double>> frequency;  ///< [plant][sample], reported by the instruments [Hz]
 };

@@ -28,7 +28,7 @@ namespace {
 using namespace validate;
 using nlohmann::json;
 
-constexpr std::size_t kMostBytes = 1 << 20;    ///< largest body of a request
+constexpr std::size_t kMostBytes = 1 << 20;    ///< largest body of a request [bytes]
 constexpr std::size_t kMostSessions = 16;      ///< most open pages; the least recently used one is closed
 constexpr std::size_t kThreads = 256;          ///< most connections at the same time
 constexpr int kIdle = 2;                       ///< time until an idle connection is closed [s]
@@ -112,7 +112,7 @@ struct PageServer::State {
   httplib::Server http;
   std::mutex lock;
   std::map<std::string, std::shared_ptr<Page>> pages;
-  std::atomic<int> readers{0};  ///< threads that read the messages of fits
+  std::atomic<int> readers{0};  ///< number of threads that read the messages of fits
   Worker worker;
 
   /// Returns whether a request comes from the page itself.
@@ -372,7 +372,7 @@ void PageServer::State::routes() {
 
 PageServer::PageServer(PageParts parts, int port) : state_(std::make_unique<State>()) {
   state_->parts = std::move(parts);
-  state_->routes();  // sets socket options, so before the socket is created
+  state_->routes();  // before the socket is created, because it sets socket options
   const char* const here = "127.0.0.1";
   if (port == 0)
     state_->port = state_->http.bind_to_any_port(here);
@@ -381,7 +381,7 @@ PageServer::PageServer(PageParts parts, int port) : state_(std::make_unique<Stat
   if (state_->port <= 0)
     throw InputError({fmt::format("port {}", port), "--port", "another program uses it",
                       "choose another one, or leave --port out"});
-  // httplib's queue has 5 connections and drops further ones, which a browser repeats only after a second.
+  // httplib's queue holds 5 connections only. A browser repeats a dropped connection only after a second.
   ::listen(state_->socket, static_cast<int>(kThreads));
 }
 

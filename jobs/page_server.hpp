@@ -15,12 +15,12 @@ namespace swingbank::jobs {
 /// Parts of the page that the command supplies.
 struct PageParts {
   std::shared_ptr<const validate::live::Setup> setup;  ///< inputs
-  /// Return the step of the submitted model: `first` with the detected switching times, `submitted` with the
-  /// fitted ones. Both wait until the step is computed.
+  /// Return the step (validate/live/session.hpp) of the submitted model: `first` with the detected switching
+  /// times, `submitted` with the fitted switching times. Both wait until the step is computed.
   std::function<std::shared_ptr<const validate::live::Step>()> first, submitted;
   /// Starts a fit (validate/live/fits.hpp).
   std::function<std::unique_ptr<FitProcess>(const nlohmann::json& request)> start_fit;
-  /// Returns a function that formats the progress messages of a fit of this kind.
+  /// Returns a function that formats the progress messages of a fit of the given kind.
   std::function<std::function<std::string(const nlohmann::json& message)>(const std::string& kind)> progress;
   /// Saves a step and returns the messages to the user.
   std::function<nlohmann::json(const validate::live::Session& session, int step)> save;

@@ -51,7 +51,7 @@ int run(Arguments& a) {
       fmt::print(stderr, "note: {}\n", note);
       head.push_back(note);
     }
-  if (model.record_base.kv <= 0)  // the note is not in the file, where it would remain after base_kv is added
+  if (model.record_base.kv <= 0)  // printed only: in the file, the note would remain after base_kv is added
     fmt::print(stderr,
                "note: the case gives bus {} no nominal voltage (BASKV = {:g} kV): for records in kV write "
                "base_kv, line to line, under [record]\n",

@@ -72,7 +72,7 @@ ordered_json intervals_json(const train::run::Estimate& e) {
 }
 
 /// Returns whether a record is outside the training distribution; the network's estimate is then meaningless.
-/// The margin allows for generators that were left out and swing more than those of the training rows.
+/// The factor kStrange allows for left-out generators that swing more than those of the training rows.
 bool unlike_training(const train::run::NetworkInfo& n, const Estimated& e) {
   constexpr double kStrange = 1.5;
   return e.estimate.input_rms > kStrange * n.input_rms_seen;

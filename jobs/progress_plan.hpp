@@ -21,7 +21,7 @@ using validate::event::Phase, validate::event::phase_words;
 struct PlannedPhase {
   Phase phase;
   double from, to;      ///< share of the total time at the phase's begin and end
-  bool beyond = false;  ///< optional phase after an unsuccessful search, without estimate
+  bool beyond = false;  ///< optional phase after an unsuccessful search; the time left is not estimated
 };
 /// Sequence of a command's phases.
 using ProgressPlan = std::vector<PlannedPhase>;
@@ -48,13 +48,13 @@ inline const ProgressPlan kDiagnosePlan = {
     {Phase::pair_unseen_events, 0.95, 0.97, true},
     {Phase::playing, 0.97, 1},
 };
-/// Phases of `calibrate`, measured with two of these events (5 s each).
+/// Phases of `calibrate`, measured with two of the four events above (5 s each).
 inline const ProgressPlan kCalibratePlan = {
     {Phase::model_as_it_is, 0, 0.15},  {Phase::parameter_sets, 0.15, 0.2}, {Phase::starts, 0.2, 0.62},
     {Phase::voltage_noise, 0.62, 0.8}, {Phase::fitted_model, 0.8, 0.82},   {Phase::sensitivities, 0.82, 0.95},
     {Phase::playing, 0.95, 1},
 };
-/// Phases of `add`, measured with the four events (4 s).
+/// Phases of `add`, measured with the same four events (4 s).
 inline const ProgressPlan kAddPlan = {
     {Phase::model_as_it_is, 0, 0.06},    {Phase::missing_input, 0.06, 0.23},
     {Phase::quick_fits, 0.23, 0.26},     {Phase::screening, 0.23, 0.26},

@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   using namespace swingbank;
   std::string kind, file;
   std::vector<std::string> names;
-  if (argc < 3) {  // otherwise the arguments are not parsed, because file names may begin with a dash
+  if (argc < 3) {  // complete commands are not parsed, because file names may begin with a dash
     jobs::CommandLine line(
         "read an HDF5 or MATLAB file in a separate process, so that its crash does not end the command",
         "swingbank read-hdf5");
@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
     line.add("FILE", file, "data to read; the output is bytes, or a list of problems with exit code 3")
         .required();
     line.add("NAMES", names, "of hdf5: arrays (/records) and attributes (@format); of mat: the time column");
-    (void)line.parse(argc, argv);  // always an error or help, because there is no file
+    (void)line.parse(argc, argv);  // always an error or help, because FILE is missing
     return line.end();
   }
   kind = argv[1];

@@ -55,8 +55,8 @@ inline double between(const validate::record::Record& r, const std::vector<doubl
 
 }  // namespace record_detail
 
-/// Returns the record shifted to the event time of the network's dataset and resampled at its rate. The
-/// records of a dataset begin in steady state. Therefore the first sample, and all samples before the
+/// Returns the record shifted to the event time of the network's dataset and resampled at the dataset's rate.
+/// The records of a dataset begin in steady state. Therefore the first sample, and all samples before the
 /// record's start, are set to the median before the event. Throws InputError if no event is found, fewer than
 /// five samples precede it, a channel is missing, or the record ends too early.
 inline NetworkInput network_input(const validate::record::Record& record,

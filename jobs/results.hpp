@@ -17,7 +17,7 @@ namespace swingbank::jobs {
 
 constexpr const char *kInterruptedModel = "model-interrupted.toml", *kPage = "report.html";
 
-/// Plays the events with the submitted model and with `after`; `name`: name of the latter in the results.
+/// Plays the events with the submitted model and with `after`; `name`: name of `after` in the results.
 inline std::vector<validate::compare::Played> play_both(const AnalysisOptions& of,
                                                         const validate::plant::PlantModel& before,
                                                         const std::string& name,

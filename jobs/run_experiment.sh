@@ -4,8 +4,8 @@
 #   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
 #                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER]
 #     --stage     check, databank, generate, train, tables, or all (default: all); count-tasks prints the number of
-#                 tasks of the stage train: one per network, noise level and fold, and one per share of the
-#                 training rows
+#                 tasks of the stage train: one per combination of network, noise level and fold, and one per
+#                 combination of network and share of the training rows
 #     --task      number of the only task of the stage train to run, from 0
 #     --seed      seed of the training (default 1)
 #     --ranks     number of MPI processes that generate (default: one per core)
@@ -79,7 +79,7 @@ databank() {
 generate_events() {
   say "events for $1 ($2 draws) on $ranks processes"
   local root=() file
-    # OpenMPI refuses to run as root unless two variables allow it. Who starts this script as root intends that.
+    # OpenMPI refuses to run as root unless two variables allow it. A user who starts this script as root wants it.
   if ((EUID == 0)); then root=(env OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1); fi
   local command=("${root[@]}")
   # shellcheck disable=SC2206 # the launcher is a list of words
@@ -131,7 +131,7 @@ train() {
     lines=("${lines[task]}")
   fi
   for line in "${lines[@]}"; do
-    # shellcheck disable=SC2086 # words: network, noise, fold and, where it is not all, the share of the training rows
+    # shellcheck disable=SC2086 # words: network, noise, fold, and the share of the training rows if less than all
     run_task $line || return $?
   done
 }

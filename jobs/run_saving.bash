@@ -5,8 +5,8 @@ stop_wanted=0
 stop_signal='' # last stop signal
 child=''
 
-# Stores a stop signal, also between two programs, and forwards it as SIGUSR1. Programs run in the background, because
-# bash runs a trap only between commands or in `wait`.
+# Stores a stop signal, even if it arrives between two programs, and forwards it as SIGUSR1. Programs run in the
+# background, because bash runs a trap only between commands or in `wait`.
 on_stop_signal() {
   stop_wanted=1 stop_signal=$1
   if [[ -n $child ]]; then kill -USR1 "$child" 2>/dev/null || true; fi
@@ -57,7 +57,7 @@ run_saving() {
   if ((stop_wanted)); then return 2; fi
   "$@" &
   child=$!
-    watch_launcher "$child" 9>&- & # without 9, the lock of a script, which its sleep would hold for another second
+    watch_launcher "$child" 9>&- & # closes 9, the lock of a script: the sleep would hold the lock for another second
   watcher=$!
   while :; do
     before=$stop_wanted status=0

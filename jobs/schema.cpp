@@ -17,7 +17,7 @@
 namespace swingbank::jobs::schema_command {
 namespace {
 
-/// Returns the schema of experiments. A separate program prints it, because it must link LibTorch.
+/// Returns the schema of experiments. A separate program, which links LibTorch, prints it.
 std::string experiment_schema() {
   const std::string program = jobs::own_command("schema-experiment", "install swingbank-train").string();
   const ProgramEnd end = run_program(program, {program}, {.output = ProgramRun::Output::taken});
@@ -63,7 +63,7 @@ int run(const std::string& wanted, const std::filesystem::path& out) {
       files.emplace_back(out / (std::string(kind.name) + ".json"), kind.schema());
     } catch (const InputError& error) {
       if (!wanted.empty()) throw;
-      fmt::print(stderr, "{}\n", error.what());  // without the training programs: all other kinds
+      fmt::print(stderr, "{}\n", error.what());  // training programs missing: the other kinds are written
     }
   }
   for (const auto& [file, text] : files)

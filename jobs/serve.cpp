@@ -84,8 +84,8 @@ int run(Command& c) {
     return [&setup, step_of] { return std::make_shared<const live::Step>(step_of(*setup)); };
   };
   const Submitted first = std::async(std::launch::async, compared(live::first_step));
-  // Computed when the page requests it, after it has shown the first step, so that the comparison does not
-  // take processor time from the browser.
+  // Comparison with fitted switching times. It starts only when the page requests it after showing the first
+  // step, so that it does not take processor time from the browser.
   Submitted submitted;
   std::once_flag asked;
   jobs::PageParts parts;

@@ -41,13 +41,13 @@ struct Options {
   std::optional<double> tolerance, frequency_hz;
   std::vector<std::string> ignore_models, map_models;
   bool after_switching = false, net_generators = false, widen_limits = false, drop_refused = false;
-  int complete_records = 0, devices = 0, repeated = 0;  // indices of the chosen words
+  int complete_records = 0, devices = 0, repeated = 0;  // each an index of the chosen value of its option
   int raw_version = 0;
   std::string start = "solved", q_limits = "enforce", switched_shunts = "fixed";
   std::filesystem::path changes;
 };
 
-/// Returns the option that defines a part of an event, with its value.
+/// Returns the option, with its value, that defines a part of an event: "--fault 4:2:2.1".
 std::string event_option(grid::EventPart part, const std::string& text) {
   constexpr const char* kOptions[] = {"--fault",     "--trip",      "--trip-generator", "--load-step",
                                       "--vref-step", "--pref-step", "--fault-type",     "--z0"};

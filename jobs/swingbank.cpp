@@ -89,7 +89,8 @@ int refuse(std::string_view wanted, const fs::path& folder, const std::vector<Co
   return 1;
 }
 
-/// Instruction-set level (x86-64 psABI) that a build may contain in addition to the common one.
+/// Instruction-set level (x86-64 psABI) for which a build may contain programs, in addition to the common
+/// programs for every x86-64 processor.
 struct Level {
   std::string_view name;
   bool supported;

@@ -10,7 +10,7 @@
 
 namespace swingbank::jobs {
 
-/// Declares the options, checks the request and calls `work` with both. Returns the exit code.
+/// Declares the options, checks the request and calls `work` with options and request. Returns the exit code.
 inline int train_main(CommandLine& line, int argc, char** argv,
                       const std::function<int(const TrainingOptions&, train::run::RunRequest&)>& work) {
   TrainingOptions options;

@@ -63,7 +63,7 @@ function chart(place, of, height) {
   return { plot, of, place, height };
 }
 
-/** Shows an event: channels of {name, unit, data: [t, measured, ghost, modelled], band, window, fault, allowed, main}. */
+/** Shows channels {name, unit, data: [t, measured, submitted model, current model], band, window, fault, allowed, main}. */
 export function show(channels) {
   ++moving;
   for (const c of charts.splice(0)) {

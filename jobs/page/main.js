@@ -57,7 +57,7 @@ const windowOf = (chip) => {
 };
 const windows = () => chipsOf(state.step, state.event).map(windowOf);
 
-/** Returns the measured curve minus and plus the maximum error (MXE) allowed before, in and after the fault. */
+/** Returns the measured curve minus and plus the maximum error (MXE) allowed before, during and after the fault. */
 function allowed(largest, times_, t, measured) {
   if (!largest || !times_.length) return null;
   const size = t.map((at) => largest[at < times_[0] ? 0 : at <= times_.at(-1) ? 1 : 2]);
@@ -170,7 +170,7 @@ function showStep() {
     );
 }
 
-/** Makes a step the current one; the curves move from the shown ones to its own. */
+/** Makes a step the current one and animates the shown curves into the curves of this step. */
 async function enter(step, keepPast = false) {
   if (!keepPast) {
     state.past.push(state.step.step);
