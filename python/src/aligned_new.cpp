@@ -1,7 +1,7 @@
 // Operator new of the extension: aligned to cache lines, as in the programs (base/aligned_new.cpp), but
 // compatible with free(). Libraries that were loaded before the extension keep the default operators. Such a
-// library may release blocks that the extension allocated, and the reverse. base/aligned_new.cpp does not
-// allow this, because it stores a pointer before each block.
+// library may release blocks that the extension allocated, and the extension blocks of that library.
+// base/aligned_new.cpp does not allow this, because it stores a pointer before each block.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

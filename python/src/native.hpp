@@ -31,7 +31,7 @@ struct Record {
 struct Playback {
   std::shared_ptr<const Plant> plant;  ///< the plant that was played
   compare::EventComparison event;      ///< comparison of the measured and modelled channels
-  bool complete = false;               ///< whether only noise remains; in a Comparison: in all events
+  bool complete = false;  ///< whether only noise remains in this event; in a Comparison: in all its events
 };
 /// Python's Comparison: several events played into a plant, with both verdicts.
 struct Comparison {
@@ -44,7 +44,7 @@ struct Comparison {
 struct PlayOptions {
   bool power_only = false, fit_switchings = true;  ///< as the options of `swingbank compare`
   std::string input = "voltage";                   ///< "voltage" or "pq"
-  double pre_event = 1.0;                          ///< [s]
+  double pre_event = 1.0;                          ///< length of the steady-state window [s]
 };
 
 /// Returns an array with a copy of the values times `scale`.

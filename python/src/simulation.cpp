@@ -25,7 +25,7 @@ using Words = std::vector<std::string>;
 struct Run {
   sim::reference::ReferenceRun samples;
   Words plants;
-  std::vector<double> bases;  ///< [MVA]
+  std::vector<double> bases;  ///< machine base of each plant [MVA]
   std::vector<int> buses;     ///< bus numbers
 };
 
@@ -61,7 +61,7 @@ std::shared_ptr<Grid> load(const Path& raw, const Path& dyr, const std::string& 
   });
 }
 
-/// Returns the name of the argument that defines a part of an event, with its value, for messages.
+/// Returns, for messages, the argument and the value that define a part of an event: "faults 4:2:2.1".
 std::string place_of(sim::grid::EventPart part, const std::string& text) {
   static constexpr const char* kArguments[] = {"faults",     "trips",      "generator_trips", "load_steps",
                                                "vref_steps", "pref_steps", "fault_type",      "z0"};

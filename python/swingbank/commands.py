@@ -11,7 +11,7 @@ from .errors import InputError
 def _candidates() -> list[pathlib.Path]:
     """Returns the folders that may hold the commands: SWINGBANK_BIN, the build or installation, and the PATH.
 
-    In an installation bin/swingbank is a link into that folder."""
+    In an installation, bin/swingbank is a link into the folder of the commands."""
     found = []
     if os.environ.get("SWINGBANK_BIN"):
         found.append(pathlib.Path(os.environ["SWINGBANK_BIN"]))

@@ -106,7 +106,7 @@ class Dataset:
         self.close()
 
     def __getstate__(self) -> dict[str, Any]:
-        """Allows loaders with several processes: each opens the files for itself."""
+        """Omits the open file when pickled, so that each process of a data loader opens the files itself."""
         return {**self.__dict__, "_file": None}
 
     def _shape(self, path: str) -> tuple[int, ...]:
