@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Follows docs/how-to/add-an-effect.md literally in a copy of the tree: writes its files and runs its commands. The
-# listing, the simulator, the generator and compare must find both the law and the header without another edit.
+# listing, the simulator, the generator and compare must find both the user-defined model and the header without another
+# edit.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 own_mounts
 
 build=${SWINGBANK_BIN%/bin}
 tree=$work/tree
-# The copy replaces the tree and the build folder for this script alone: build files contain absolute paths, so in the
-# same place only the targets of the new header are rebuilt. Targets that link LibTorch are excluded.
+# For this script only, the copy is mounted over the tree and the build folder. The absolute paths in the build files
+# then remain valid, and only the targets of the new header are rebuilt. Targets that link LibTorch are excluded.
 copy_tree() {
   mkdir "$tree"
   (cd "$SWINGBANK_SOURCE" && tar -cf - --exclude=./build --exclude=./.git --exclude=./out .) | tar -xf - -C "$tree"
@@ -46,7 +47,7 @@ PYTHON
 commands=("$work"/command*.sh)
 ((${#commands[@]} == 3)) || fail "${#commands[@]} command blocks in the document, 3 expected"
 
-# The targets existed before: no file of the tree was edited.
+# All targets existed before, so that no file of the tree needs an edit.
 built=(swingbank swingbank-effects swingbank-simulate swingbank-generate swingbank-compare test_sim_effects)
 cmake --build "$build" --target "${built[@]}" >"$work/build.log" 2>&1 || fail "the build: $(tail -n 40 "$work/build.log")"
 echo "ok: built after $SECONDS s"
@@ -80,7 +81,7 @@ def table(name):
 law, header = table("law.csv"), table("header.csv")
 efd = law["2.Efd_pu"]
 assert abs(efd[-1] - efd[0]) > 0.1  # the step and the limiter move it
-for name in law:  # two runs of the reference at rtol 1e-8 of the same equations
+for name in law:  # two runs of the same equations by the reference integrator at rtol 1e-8
     worst = numpy.abs(law[name] - header[name]).max()
     assert worst < 1e-5, (name, worst)
 
@@ -109,6 +110,6 @@ def numbers(node):
 
 p, q = numbers(one), numbers(other)
 assert len(p) == len(q) > 10
-assert max(abs(x - y) / (1 + abs(x)) for x, y in zip(p, q)) < 1e-4  # play-in's own tolerance
+assert max(abs(x - y) / (1 + abs(x)) for x, y in zip(p, q)) < 1e-4  # tolerance of the play-in
 PYTHON
 echo "ok: law and header of docs/how-to/add-an-effect.md, after $SECONDS s"

@@ -10,7 +10,7 @@ mkdir "$out"
 compare() { "$swingbank" compare --model "$1" --record "$2" --out "$out"; }
 code=0
 compare "$model" "$record" >/dev/null || code=$?
-[[ $code == 3 ]] || fail "exit code $code: the cases below must fail for their own reason only" # 3: read, not adequate
+[[ $code == 3 ]] || fail "exit code $code: the cases below must fail for their own reason only" # 3: not adequate
 [[ -s $out/report.html ]] || fail "no report.html"
 find "${out:?}" -mindepth 1 -delete
 
@@ -38,8 +38,8 @@ leaves_nothing "$out"
 disk "$work/full" 64k
 out=$work/full
 refuses "full disk" "$work/full" compare "$model" "$record"
-# A complete curve may stay, with the list from which the next run removes it. The report and partial files must be
-# absent.
+# A complete playback file may remain, with the list by which the next run removes it. The report and partial files must
+# be absent.
 left=$(find "$work/full" -type f ! -name 'playback-*.csv' ! -name '.swingbank-compare')
 [[ -z $left ]] || fail "left behind: $left"
 out=$model/report

@@ -16,7 +16,7 @@ misused "unknown option" 'nonsense' make_data "$config" "$data" --nonsense 3
 misused "no number of draws" 'draws' make_data "$config" "$data" --draws many
 misused "too few draws" '“-1” is not a number above 0' make_data "$config" "$data" --draws=-1
 
-# edit NAME SED-SCRIPT: a config with one fault
+# edit NAME SED-SCRIPT: writes a config with one error
 edit() { sed "$2" "$config" >"$work/$1.toml"; }
 edit key 's/^duration/duraton/'
 refuses "unknown key" 'key.toml:[0-9]+' make_data "$work/key.toml" "$data"
@@ -34,7 +34,7 @@ edit network 's/^raw = .*/raw = "none.raw"/'
 refuses "no such network" 'none.raw' make_data "$work/network.toml" "$data"
 [[ ! -e $data ]] || fail "a refused config left $data"
 
-# No machine stays in synchronism through a fault of two seconds: no row, which is a failure.
+# No machine stays in synchronism through a fault of two seconds. The dataset then has no rows, which is an error.
 edit unstable 's/^buses = .*/buses = [16]/; s/^duration = .*/duration = [2.0, 2.1]/; s/^draws = .*/draws = 20/'
 refuses "dataset without rows" 'a dataset without rows at .*unstable_data .*stable' make_data "$work/unstable.toml" "$work/unstable_data"
 

@@ -12,7 +12,7 @@ simulate() {
   shift 2
   "$swingbank" simulate --raw "$raw_file" --dyr "$dyr_file" --out "$out/run.csv" --out "$out/run.h5" --t-end 3 "$@"
 }
-simulate "$raw" "$dyr" --fault 16:1:1.1 >/dev/null # the cases below fail for their own reason only
+simulate "$raw" "$dyr" --fault 16:1:1.1 >/dev/null # succeeds, so each case below fails for its own reason only
 rm "$out"/run.*
 
 refuses "no such .raw" "$work/none.raw" simulate "$work/none.raw" "$dyr"

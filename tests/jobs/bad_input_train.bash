@@ -9,5 +9,5 @@ experiment=$work/tiny.toml data=$work/data out=$work/out
 mkdir "$out"
 # validate DATA EXPERIMENT [OPTION...]
 validate() { "$swingbank" cross-validate "$1" --experiment "$2" --out "$out" "${@:3}"; }
-# edit NAME SED: the experiment, changed, as NAME.toml
+# edit NAME SED: writes the experiment, changed by SED, as NAME.toml
 edit() { sed "$2" "$experiment" >"$work/$1.toml"; }

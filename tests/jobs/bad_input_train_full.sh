@@ -3,7 +3,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/bad_input_train.bash"
 
-# refuses_at_once NAME PATTERN COMMAND...: before the kernels are measured, which takes seconds and prints a line
+# refuses_at_once NAME PATTERN COMMAND...: also checks that the refusal comes before the BLAS kernels are measured
 refuses_at_once() {
   refuses "$@"
   [[ $(wc -l <"$work/stderr") == 1 ]] || fail "$1: the kernels were measured before: $(cat "$work/stderr")"

@@ -16,7 +16,7 @@ simulate --t-end 8 --vref-step 2:1:0.03 --out vref.csv
 "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 2 --out bare.toml >/dev/null
 { cat bare.toml; echo; "$swingbank" effects SEXS --toml; } >right.toml
 mva=$(sed -n '/^\[plant\]/,/^\[/s/^base_mva *= *\([0-9.]*\).*/\1/p' right.toml)
-sed -i "/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = $mva/" right.toml # simulate writes pu of the machine
+sed -i "/^\[record\]/,/^base_mva/s/^base_mva = .*/base_mva = $mva/" right.toml # simulate's P and Q: machine base
 awk '$1 == "H" {$3 = 1.2 * $3} {print}' right.toml >wrong.toml
 cmp -s right.toml wrong.toml && fail "no inertia was changed"
 cat >tests.toml <<'TOML'
@@ -76,11 +76,11 @@ report = json.load(open("other/benchmark.json"))
 assert report["format"] == "swingbank-benchmark-1" and report["passes"] is False
 assert report["model"]["mva"] == float(sys.argv[1]) and report["limits"]["name"] == "narrow"
 recorded, curves = table("dip.csv"), table("other/curves-dip.csv")
-for name in "P", "Q":  # the reference is the record, in the windows
+for name in "P", "Q":  # within the windows, the reference equals the record
     at = {round(t, 6): v for t, v in zip(recorded["t_s"], recorded[f"2.{name}_pu"])}
     for t, v in zip(curves["t_s"], curves[f"{name}_reference_pu"]):
         assert abs(at[round(t, 6)] - v) < 1e-8, (name, t)
-# Limits of a simulated reference leave out 20 ms of the fault and 60 ms after it.
+# With a simulated reference, the windows exclude the first 20 ms of the fault and the first 60 ms after it.
 window = {"pre": (0.5, 1.0), "during": (1.02, 1.15), "post": (1.21, 4.5)}
 test = report["tests"][0]
 assert test["name"] == "dip" and len(test["errors"]) == 6

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Twelve events of a unit at bus 32 of the IEEE 39-bus grid, as a phasor measurement unit on the high side of its
-transformer would record them at 30/s: four faults, three losses of generation, three load steps, two lines tripped.
+transformer would record them at 30/s: four faults, three losses of generation, three load steps, two line trips.
 
     benchmark_units.py SWINGBANK RAW DYR FOLDER {sharp,class-m,jumpless-f,meter-f}
 
 Writes FOLDER/event1.csv to event12.csv (V in kV, angle in degrees, P in MW, Q in Mvar). Noise: 0.01 % on V, 0.005
-degrees, 0.05 % of the unit's 800 MVA on P and Q. class-m: behind PMUFILTER of class M for 30/s, which is 0.32 s long; at
-the terminal, for it and the transformer are linear in voltage and current. jumpless-f: f in place of the angle, with 1 mHz of
-noise, without what the angle jumps by; meter-f: the same as the mean over two reports, in which the jumps are peaks.
+degrees, 0.05 % of the unit's 800 MVA on P and Q. sharp: without filter. class-m: with PMUFILTER of class M for 30/s,
+0.32 s long. It may act at the terminal, because filter and transformer are linear in voltage and current. jumpless-f: f
+instead of the angle, with 1 mHz of noise and without the angle's jumps. meter-f: as jumpless-f, but f is the mean over
+two reports, in which the jumps appear as peaks.
 """
 import cmath
 import math
@@ -17,7 +18,7 @@ import sys
 
 FINE, RATE = 960, 30  # samples/s of the simulation and of the record
 MVA, KV, RATIO, REACTANCE = 8.0, 345.0, 1.07, 0.02j  # machine [100 MVA], grid side, transformer 10-32 [pu on 100 MVA]
-EDGE = 160  # five reports, in samples at FINE, left out at either end: half of the filter is 153 long
+EDGE = 160  # samples at FINE (five reports) omitted at each end, because half of the filter is 153 samples long
 EVENTS = [
     ("--fault 14:2:2.08", 12), ("--fault 4:2:2.1", 12), ("--fault 21:2:2.07", 12), ("--fault 26:2:2.1:0:0.05", 12),
     ("--trip-generator 38:2", 30), ("--trip-generator 35:2:0.5", 30), ("--trip-generator 30:2", 30),
@@ -46,7 +47,7 @@ def simulated(program, raw, dyr, event, seconds, folder, measure):
 
 
 def frequency(voltage, instrument):
-    """Hz, of voltages at FINE."""
+    """Returns the frequency [Hz] of voltages sampled at FINE."""
     phase = [cmath.phase(v) for v in voltage]
     f = [math.remainder(b - a, math.tau) * FINE / math.tau for a, b in zip(phase, phase[1:])]
     f.append(f[-1])

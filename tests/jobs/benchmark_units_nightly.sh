@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Two typical units, a steam unit (GENROU, ESST4B, PSS2B, IEEEG1) and a gas unit (GENROU, REXS, PSS2A, GGOV1), each
-# behind its transformer in twelve events at 30/s. The right model leaves only noise. Of five wrong values `calibrate
-# --sparse` names all, close to the truth, and at most two more. Of gains that act as a product either factor may be
-# named.
+# behind its transformer, in twelve events recorded at 30 samples/s. With the right model only noise remains. `calibrate
+# --sparse` must name all five wrong values, fit them close to the truth, and name at most two others. If two gains act
+# only as a product, it may name either of them.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks
@@ -57,7 +57,7 @@ import json, sys
 wrong = {w["name"]: w["fitted"] for w in json.load(open(sys.argv[1]))["wrong"]}
 truth = {name: float(value) for name, value in (a.split("=") for a in sys.argv[2:])}
 count = len(wrong)
-if "ESST4B.KPM" in wrong and "ESST4B.KPR" in truth:  # with KG = 0 the products KPM KPR and KPM KIR act; 5.5 is the owner's
+if "ESST4B.KPM" in wrong and "ESST4B.KPR" in truth:  # KG = 0: only KPM KPR and KPM KIR act; owner: KPR = KIR = 5.5
     gain = wrong.pop("ESST4B.KPM")
     print(f"ESST4B.KPM {gain:.4g} scales KPR and KIR")
     wrong |= {name: gain * wrong.get(name, 5.5) for name in ("ESST4B.KPR", "ESST4B.KIR")}

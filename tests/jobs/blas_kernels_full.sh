@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Training commands use the kernels of their processor even if OpenBLAS does not support it; a kernel chosen by the
-# user stays, with a warning.
+# Training commands use the BLAS kernels that suit the processor, even if OpenBLAS does not support this processor. A
+# kernel chosen by the user is kept, with a warning.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 export OMP_NUM_THREADS=1
 unset OPENBLAS_CORETYPE SWINGBANK_OPENBLAS_ALONE

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank blind-test on several ranks: the same cases as on one, each judged once; existing verdicts stay.
+# swingbank blind-test on several ranks: the same cases as on one rank, each judged once; existing verdicts are kept.
 # shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
@@ -29,7 +29,7 @@ ranks 3 --out "$work/three" --judge "$work/judge" >"$work/text" 2>/dev/null
 grep -q 'judged 2 cases, 0 failed' "$work/text" || fail "said: $(cat "$work/text")"
 [[ $(sort "$work/asked" | uniq -d | wc -l) == 0 && $(wc -l <"$work/asked") == 5 ]] || fail "asked: $(cat "$work/asked")"
 
-# a failure of one rank is the exit code of all
+# if one rank fails, all ranks return its exit code
 rm "$work/three/verdicts/c0003.json"
 code=0
 ranks 2 --out "$work/three" --judge "$work/nobody" >/dev/null 2>"$work/log" || code=$?

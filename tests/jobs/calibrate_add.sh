@@ -57,7 +57,7 @@ grep -q '^// Excitation system, manufacturer: ABC' "$work/added/model.dyr" || fa
 grep -q '^effect = "SEXS"' "$work/added/model.toml" || fail "the new model has no SEXS"
 grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the new model does not say where it comes from"
 
-# the output is a model: it can be calibrated again, and its parameters hold
+# the output is a valid model: it can be calibrated again and remains adequate
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --power-only --draws 0 --starts 0 --out "$work/again" >"$work/text"
 [[ -s $work/again/model.toml && -s $work/again/calibrate.json ]] || fail "model.toml and calibrate.json expected"
 grep -q "^2 'SEXS' '1' " "$work/added/model.dyr" || fail "add wrote no .dyr of the example plant"
@@ -76,7 +76,7 @@ grep -q '^Usability: Initialises; the step response is damped' "$work/text" || f
   --draws 0 --starts 0 --out "$work/told" >/dev/null
 holds -q '2.1000 s (given)' <"$work/told/report.html" || fail "the page does not say that the instants were given"
 
-# the usual method for comparison, with known truth: tables and JSON agree on which is closer
+# plain curve fitting for comparison, with known truth: table and JSON state which method is closer to the truth
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --hold-out avr_ev2 --power-only --draws 0 --starts 0 \
   --method both --truth "$work/added/model.toml" --out "$work/both" >"$work/text"
 grep -q 'intervals contain the true value' "$work/text" || fail "no comparison with the truth"

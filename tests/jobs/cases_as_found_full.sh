@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Unmodified public PSS/E cases, stored next to $SWINGBANK_REFERENCE. Each runs with the options that the messages
-# name, lists the modifications on one screen, and stays at rest without a fault.
+# name, lists the modifications on one screen, and stays in steady state without a fault.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 cases_of_others
 

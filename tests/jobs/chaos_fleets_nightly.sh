@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Kills at times spread evenly over a fleet's diagnosis: of the process or mpirun, of one child or rank, of all at
-# once, of all with one stopped before. One more run of each must end in the same tables.
+# Kills a fleet's diagnosis at times spread evenly over its duration: the process or mpirun, one child or rank, all at
+# once, or all after one was stopped. After each kill, one more run must give the same tables.
 #   SWINGBANK_KILLS=100 bash tests/jobs/chaos_fleets_nightly.sh      (16 by default; tests/mpi/campaign.bash)
 # shellcheck disable=SC2154 # set by lib.bash and two_plants.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
@@ -11,7 +11,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../mpi/campaign.bash"
 kills=${SWINGBANK_KILLS:-16}
 export OMP_NUM_THREADS=1
 
-# command RANKS OUT: sets `run`; 1: without a launcher
+# command RANKS OUT: sets `run`; one rank: without a launcher
 command() {
   run=("$SWINGBANK_BIN/swingbank-diagnose" --fleet "$fleet_file" --out "$2")
   if (($1 > 1)); then run=(mpirun --oversubscribe -np "$1" "${run[@]}"); fi
@@ -34,7 +34,7 @@ for ((i = from; i < kills; i += stride)); do
   at=$((lasts[$ranks] * i / kills))
   begin_and_kill "$way" "$at" "${run[@]}"
   what="kill $i ($way of $ranks ranks at $at ms)"
-  # Without a launcher a fleet survives its child: that plant fails, the others finish.
+  # Without a launcher, the fleet's process survives a killed child: its plant fails, and the other plants finish.
   for ((wait = 0; wait < 600; ++wait)); do
     pgrep -f -- "--fleet $fleet_file .*--out $out" >/dev/null || break
     sleep 0.1

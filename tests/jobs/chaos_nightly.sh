@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Kills at times spread evenly over databank, train and cross-validate: of the process, of one child, of all at once,
-# of all with one stopped before. One more run of each must end with the same result and network.
+# Kills databank, train and cross-validate at times spread evenly over their duration: the process, one child, all at
+# once, or all after one was stopped. After each kill, one more run must give the same result and network.
 #   SWINGBANK_KILLS=200 bash tests/jobs/chaos_nightly.sh      (40 by default)
 # shellcheck disable=SC2154,SC2034 # set by lib.bash; read by tiny_experiment
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Estimates without training, as rows of a table: exact for noise-free records, refused where they are impossible.
+# Methods without training (closed-form, refined, floor) as rows of a table: exact for noise-free records, refused where
+# an estimate is impossible.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 export OMP_NUM_THREADS=1
@@ -26,7 +27,7 @@ judge "$work/data" || fail "$(cat "$work/log")"
 /usr/bin/python3 - "$work/out/V-closed-form-quick-seed1-gen30.json" <<'PYTHON'
 import json, sys
 r = json.load(open(sys.argv[1]))
-# records have single precision: 1e-7 of P integrated over 3 s, relative to 2H times a speed of 1e-3
+# records have single precision: an error of 1e-7 in P, integrated over 3 s, relative to 2H times a speed of 1e-3 pu
 assert r["mse"] < 1e-5, r["mse"]
 assert r["baseline_mse"] > 0.5 and r["epochs"] == 0 and r["input"] is None and r["test_rows"] > 10, r
 PYTHON

@@ -17,11 +17,11 @@ import json, sys
 r = json.load(open(sys.argv[1]))
 first = r["ranking"][0]
 assert r["adequate"] is False and first["terminal"] == "gen2" and first["alone_adequate"] is False
-start = r["terminals"][0]["initial"]  # the power flow is that of the record; sigma of its means 0.002 / sqrt(121)
+start = r["terminals"][0]["initial"]  # the record's power flow; standard error of its means: 0.002 / sqrt(121)
 assert abs(start["P_pu"]) < 6e-4 and abs(start["Q_pu"]) < 6e-4 and abs(start["V_pu"]) < 1e-4, start
 PYTHON
 
-# records of the same grid: adequate; with one modified governor: its terminal first
+# records of the same grid: adequate; records with one modified governor: its terminal is ranked first
 simulate() {
   "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --attach all:SEXS --t-end 8 --rate 60 \
     --fault 4:2:2.1 --channels V,theta,P,Q --buses 5 --out "$1.h5" --out "$1.csv" "${@:2}" >/dev/null

@@ -41,7 +41,7 @@ sed 's/^Kvi = .*/Kvi = 5.0/; s/^Kqv = .*/Kqv = 0.5/' "$work/plant.toml" >"$work/
 compare --model "$work/wrong.toml" --out "$work/wrong" >"$work/said" &&
   fail "another gain was not noticed"
 
-# A control of the wrong kind of source.
+# Controls that belong to another kind of source are refused.
 {
   cat "$work/case.dyr"
   echo "32 'SEXS' 1 0.1 10 50 0.1 -4 5 /"
@@ -54,8 +54,9 @@ grep -v REPCA1 "$work/case.dyr" >"$work/without.dyr"
 refuses "a plant control that measures nowhere" "bus 999, which REPCA1 of plant 32 measures, is not in service at --attach" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/without.dyr" --attach 32:REPCA1:RemoteBus=999 --out "$work/x.csv"
 
-# A source with built-in control, and one behind a reactance: each explains its own run, but not with a wrong gain.
-explains_itself() { # NAME VALUES, records on stdin; VALUES: how its record begins
+# A source with built-in control (DERA1), and sources behind a reactance: each explains its own run, but not with a
+# wrong gain.
+explains_itself() { # NAME VALUES, .dyr records on stdin; VALUES: first values of the record NAME
   { grep -v '^32 ' "$networks/ieee39_genrou.dyr"; cat; } >"$work/case.dyr"
   simulate --t-end 6 --rate 240 --fault 12:1:1.1 --out "$work/run.csv" >/dev/null
   "$swingbank" plant --raw "$raw" --dyr "$work/case.dyr" --bus 32 --out "$work/plant.toml" >/dev/null

@@ -1,7 +1,7 @@
 # Sourced by the tests of the Debian packages, after lib.bash.
 # shellcheck disable=SC2154 # work is lib.bash's
 
-# make_packages FOLDER: the packages of the build folder
+# make_packages FOLDER: writes the packages of the build folder to FOLDER
 make_packages() {
   local build
   build=$(cd "$SWINGBANK_BIN/.." && pwd)

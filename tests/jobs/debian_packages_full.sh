@@ -13,7 +13,7 @@ for level in "$SWINGBANK_BIN"/x86-64-v?; do
   if [[ -d $level ]]; then wanted+=("swingbank-${level##*/}"); fi
 done
 cmp <(for one in *.deb; do dpkg-deb -f "$one" Package; done | sort) <(printf '%s\n' "${wanted[@]}" | sort) || fail "packages: $(ls)"
-# The static libraries take lintian as long as all else: they are checked nightly.
+# lintian takes as long for the static libraries as for all other packages, so they are checked nightly only.
 for package in "${wanted[@]:1}"; do check "$package"_*.deb; done
 
 # depends PACKAGE: the names of the packages that it depends on

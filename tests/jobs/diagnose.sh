@@ -16,7 +16,7 @@ status=0
 script -qefc "'$swingbank' diagnose --model '$model' --records '$one' '$two' --power-only --threads 1 --out '$work/found' --json \
   >'$work/printed.json'" "$work/terminal" >/dev/null || status=$?
 ((status == 3)) || fail "exit code $status, expected 3"
-# progress on a terminal in plain words: the share done, or that the run takes longer than planned
+# progress on a terminal in plain words: the percentage done, or that an optional search phase runs
 tr '\r' '\n' <"$work/terminal" | sed 's/\x1b\[K//' | grep -E ' [0-9]+ of [0-9]+' >"$work/progress"
 (($(wc -l <"$work/progress") > 20)) || fail "a terminal shows no progress: $(cat "$work/progress")"
 ! grep -vE '^(note|[0-9]+ % done(, about .* left)?: [a-z]|optional search phase: [a-z])' "$work/progress" >"$work/inner" ||

@@ -37,8 +37,9 @@ rm "$work/bin/$widest/swingbank-probe" && [[ $widest != . ]] &&
   refuses "no such level" 'SWINGBANK_LEVEL' env SWINGBANK_LEVEL="$widest" "$work/bin/swingbank" probe
 refuses "unknown level" 'SWINGBANK_LEVEL' env SWINGBANK_LEVEL=x86-64-v9 "$work/bin/swingbank" probe
 
-# Each program loads at its start only what its commands need: MPI the programs of datasets, LibTorch those of networks.
-# loads PROGRAM: which of these libraries it loads, those of its libraries included
+# Each program loads at its start only what its commands need: programs of datasets load MPI, those of networks
+# LibTorch.
+# loads PROGRAM: prints which of the libraries MPI, HDF5 and LibTorch the program loads, directly or indirectly
 loads() {
   local said
   said=$(ldd "$SWINGBANK_BIN/$1") || fail "ldd $1"

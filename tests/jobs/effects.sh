@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank effects: the list, one effect, its JSON, law files, and unknown names.
+# swingbank effects: the list, one effect, its JSON, files of user-defined models, and unknown names.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 "$swingbank" effects >"$work/list.txt"
@@ -28,7 +28,7 @@ headers = {}
 for header in (source / "sim/effects").glob("*.hpp"):
     text = header.read_text()
     name = re.search(r'name = "(\w+)"', text).group(1)
-    slot = re.search(r"slot = Slot::(\w+)", text)  # an effect based on another's file has that one's slot
+    slot = re.search(r"slot = Slot::(\w+)", text)  # none: the effect has the slot of its base effect
     headers[name] = slot.group(1) if slot else listed.get(name)
 assert headers == listed, headers.keys() ^ listed.keys()
 for e in everything:
@@ -36,7 +36,7 @@ for e in everything:
     for p in e["parameters"]:
         assert p["low"] <= p["default"] <= p["high"] and p["unit"] and p["meaning"], (e["name"], p)
         assert p["default_from"] and p["bounds_from"], (e["name"], p)
-        end = re.search("(max|min)$", p["name"], re.I)  # a limit, unless it is one of a rate or of a time
+        end = re.search("(max|min)$", p["name"], re.I)  # limit of a signal, unless the unit is that of a rate or a time
         level = p["unit"] != "s" and not p["unit"].endswith("/s")
         assert not end or not level or p["limit"] == {"max": "upper", "min": "lower"}[end.group().lower()], (e["name"], p)
 

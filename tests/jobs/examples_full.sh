@@ -43,7 +43,7 @@ import re, sys
 before, after = map(float, re.findall(r" ([0-9.]+) pu", sys.argv[1]))
 assert before > 0 and after > 0 and before != after, sys.argv[1]' "$(cat added)" || fail "own_effect: $(cat added)"
 
-# The refusals are those of the commands.
+# The examples refuse bad input with the messages of the commands.
 refuses "no record" "no-record.csv" examples/play_record "$model" no-record.csv
 refuses "no dataset" "no-dataset" examples/read_dataset no-dataset
 

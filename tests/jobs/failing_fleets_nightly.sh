@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# One call fails in a fleet's diagnosis, on one rank or in the program of one plant: on its folder, on its records and
-# models, or in a memory allocation. The run ends in time, complete or with the injected error; one more run completes
-# it.
+# One system call fails in a fleet's diagnosis, on one rank or in the program of one plant: a call on the fleet's output
+# folder, on records and models, or a memory allocation. The run ends in time, complete or with the injected error. One
+# more run completes it.
 #   SWINGBANK_INJECTIONS=100 bash tests/jobs/failing_fleets_nightly.sh      (24 by default; tests/mpi/campaign.bash)
 # shellcheck disable=SC2154,SC2034 # set by lib.bash, two_plants.bash and failing_calls.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
@@ -14,7 +14,7 @@ export OMP_NUM_THREADS=1
 diagnose=("$SWINGBANK_BIN/swingbank-diagnose" --fleet "$fleet_file")
 whole_fleet "${diagnose[@]}" --out "$work/whole" || fail "$(cat "$work/log")"
 
-# command KIND: sets `run`; `plant` is the program that a fleet starts for one
+# command KIND: sets `run`; KIND `plant` is the program that a fleet starts for one plant
 command() {
   run=("${diagnose[@]}" --out "$work/run")
   case $1 in

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# One call fails in a training, at any position: on its checkpoint, network and result files, on its dataset, or in a
-# memory allocation. The run ends in time, complete with the same result or with the injected error; one more run
-# gives the same result. SWINGBANK_INJECTIONS=300 bash tests/jobs/failing_trainings_nightly.sh (90 by default)
+# One system call fails in a training, at any position: a call on the training's own files (checkpoint, network,
+# result), on its dataset, or a memory allocation. The run ends in time, complete with the same result or with the
+# injected error. One more run gives the same result.
+#   SWINGBANK_INJECTIONS=300 bash tests/jobs/failing_trainings_nightly.sh      (90 by default)
 # shellcheck disable=SC2154,SC2034 # set by lib.bash and failing_calls.bash; read by tiny_experiment
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
@@ -15,7 +16,7 @@ tiny_experiment "$work"
 sed -e '/^folds/d' -e 's/^split = .*/split = "by-databank-point"/' -e 's/^table = .*/table = "IV"/' "$work/tiny.toml" >"$work/split.toml"
 "$swingbank" generate "$work/tiny_data.toml" --out "$work/data" --progress none >/dev/null 2>&1
 
-# command KIND: sets `run`; the programs themselves, so that no call is counted twice
+# command KIND: sets `run` to a program without the dispatcher, so that no call is counted twice
 command() {
   case $1 in
     train) run=("$SWINGBANK_BIN/swingbank-train" "$work/data" --experiment "$work/split.toml") ;;
@@ -34,7 +35,7 @@ for kind in train fold folds; do
     read -r calls[$kind$under] calls[${kind}memory] < <(counts 0 "$work/$under" "${run[@]}")
   done
   essence "$work/out" >"$work/$kind.whole"
-  if [ $kind = folds ]; then calls[foldsout]=${calls[foldout]}; fi # its children leave without a count
+  if [ $kind = folds ]; then calls[foldsout]=${calls[foldout]}; fi # its child processes end without writing a count
   echo "$kind: ${calls[${kind}out]} calls on its own files, ${calls[${kind}data]} on the dataset's, ${calls[${kind}memory]} allocations"
 done
 kinds=(train fold folds) unders=(out out data) errors=(5 28 2 4 122)

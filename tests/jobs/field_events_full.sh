@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Events under field conditions, each in a simulated record: without switching (a dip and a rise of frequency, ambient
-# load, steps of references and of reactive load), without noise or quantised, with a short or disturbed pre-event,
-# ten minutes long. All are read, and a right model is found fit for purpose and statistically complete.
+# load, steps of references and of reactive load), noise-free or quantised, with a short or disturbed pre-event window,
+# or ten minutes long. All are read, and the right model is found fit for purpose and statistically complete.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks/ieee39_dataset_genrou
@@ -28,7 +28,8 @@ for _ in range(count):
           f"{random.gauss(0, size):.2f}:{random.gauss(0, size / 2):.2f}:{random.uniform(0, seconds):.3f}")
 PY
 }
-# seen NAME AS [KEY=VALUE...]: the run as a recorder shows it; noise of V [pu] and of P, Q [MW]; steps of V and power
+# seen NAME AS [KEY=VALUE...]: writes run NAME as a recorder's file AS.csv. Keys: v, p: noise of V [pu] and of P, Q
+# [MW]; step_v, step_p: their quantisation steps; from: first time [s]
 seen() {
   python3 - "$work/$1.csv" "$work/$2.csv" "${@:3}" <<'PY'
 import csv, math, random, sys
@@ -49,7 +50,7 @@ with open(sys.argv[2], "w") as out:
         out.write(f"{float(r[0]):.4f},{V:.9g},{theta:.9g},{P:.9g},{Q:.9g}\n")
 PY
 }
-# right NAME [OPTION...]: a right model is found right
+# right NAME [OPTION...]: the right model must be fit for purpose and statistically complete for this record
 right() {
   local name=$1 status=0
   shift
@@ -60,7 +61,7 @@ right() {
 
 simulated dip 60 30 --trip-generator 38:5:0.4
 seen dip dip60 && right dip60
-# Without noise a step of 0.002 pu matters and is found.
+# Without noise, a voltage step of 0.002 pu is significant, and it is found.
 seen dip dip_exact v=0 p=0 && right dip_exact
 seen dip dip_rounded step_v=1e-4 step_p=1 && right dip_rounded
 simulated rise 40 30 --load-step 20:-500:-100:5
@@ -81,7 +82,8 @@ seen fault short from=1.8 && right short
 seen fault exact v=0 p=0 && right exact
 seen fault nearly v=1e-5 p=0.008 && right nearly
 seen fault rounded step_v=1e-4 step_p=1 && right rounded
-# Two such units behind one meter: as one unit their power exceeds its rating; with --point the model is right.
+# Two such units behind one meter: taken for one unit, their power exceeds the unit's rating; with --point the model is
+# right.
 awk -F, -v OFS=, 'NR > 1 { $4 *= 2; $5 *= 2 } { print }' "$work/fault15.csv" >"$work/both.csv"
 cp "$work/plant.toml" "$work/twin.toml"
 printf '[[unit]]\nmodel = "plant.toml"\n[[unit]]\nmodel = "twin.toml"\nshare = 0.5\n' >"$work/point.toml"

@@ -35,7 +35,7 @@ rows = list(csv.DictReader(open(folder + "/fleet.csv")))
 failed = sorted(name for name in plants if name != "sound")
 assert [r["plant"] for r in rows] == failed + ["sound"] == [p["plant"] for p in fleet["plants"]], rows
 assert all(r["fit_for_purpose"] == "not judged" and r["report"] == "" for r in rows[:-1]), rows
-# the error of the submitted model is that of compare
+# the error of the submitted model equals the error that compare reports
 errors = json.load(open(sys.argv[2]))["fitness"]["errors_percent_of_mva"]
 largest = max(errors, key=lambda e: e["mxe"])
 row = rows[-1]

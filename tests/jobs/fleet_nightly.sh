@@ -22,8 +22,8 @@ for name in ("p1", "p2", "p3"):
     # two events of six seconds hardly distinguish exciters
     assert p["verdict"] in ("missing", "confusable") and p["side"] == "excitation", p
     assert "SEXS" in p["effects"][:1] + p["equivalent"], p
-    # without an exciter the residual of the field is tens of sigma; with it only noise remains on events outside the
-    # fit
+    # on events outside the fit, the residual without an exciter is tens of standard deviations; with the exciter, only
+    # noise remains
     assert p["unseen_normalised_rms_before"] > 10 and p["unseen_normalised_rms_after"] < 1.1, p
 rows = {r["plant"]: r for r in csv.DictReader(open(folder + "/fleet.csv"))}
 assert rows["p1"]["effects"].startswith("SEXS"), rows["p1"]
@@ -34,14 +34,14 @@ grep -q 'SEXS' "$work/whole/p1/report.html" || fail "no report of p1"
 done_in() { find "$1" -mindepth 2 -name diagnosis.json -not -path '*.part/*' 2>/dev/null | wc -l; }
 # wait_for FOLDER COUNT
 wait_for() {
-  local end=$((SECONDS + 1500)) # a busy machine may take minutes for one
+  local end=$((SECONDS + 1500)) # a busy machine may take minutes for one plant
   while ((SECONDS < end)); do
     if (($(done_in "$1") >= $2)); then return; fi
     sleep 0.1
   done
   fail "no $2 plants after 25 minutes: $(cat "$1.log")"
 }
-# of_fleet FOLDER: its processes
+# of_fleet FOLDER: prints the processes of the fleet with this output folder
 of_fleet() { pgrep -f -- "--fleet $work/fleet.toml .*--out $1" || true; }
 
 # kill -9 of every process when one plant is finished and another is running
@@ -52,7 +52,7 @@ mapfile -t ids < <(of_fleet "$work/killed")
 kill -9 "${ids[@]}" 2>/dev/null || true
 if wait "$started"; then fail "a killed run cannot succeed"; fi
 [[ ! -e $work/killed/fleet.json ]] || fail "killed too late to prove anything"
-sleep 1 # a diagnosis dies with its rank
+sleep 1 # the diagnosis of a plant ends when its rank is killed
 [[ -z $(of_fleet "$work/killed") ]] || fail "left running: $(of_fleet "$work/killed")"
 expect 1 fleet "$work/fleet.toml" "$work/killed" 3
 (($(grep -c 'existed already' "$work/killed.log") >= 1)) || fail "finished plants were computed again"
@@ -63,7 +63,7 @@ same_table "$work/whole" "$work/killed"
 fleet "$work/fleet.toml" "$work/soft" >"$work/table" &
 started=$!
 wait_for "$work/soft" 1
-kill -USR1 "$(pgrep -o -f -- "--fleet $work/fleet.toml .*--out $work/soft")" # the oldest: its diagnoses came after it
+kill -USR1 "$(pgrep -o -f -- "--fleet $work/fleet.toml .*--out $work/soft")" # the oldest is the fleet's process
 code=0
 wait "$started" || code=$?
 ((code == 2)) || fail "exit code $code after SIGUSR1"

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# What is handed in: nameplate, usability and signatures of the reports; models that cannot be checked; faulty nameplates.
+# Parts of a report that a submission needs: nameplate, usability and signatures; errors of a nameplate.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 # shellcheck disable=SC2154 # set by verdict.bash
 source "$(dirname "${BASH_SOURCE[0]}")/verdict.bash"
 
-# an own plant: nothing given, all missing; a given field is on page, terminal and JSON
+# without a nameplate all fields are reported as missing; a given field is on page, terminal and JSON
 gives 3 '^Missing under \[nameplate\] of .*: owner, plant, unit, mva, kv, recorded, machine.manufacturer' compare --model "$bent"
 cat "$bent" - >"$work/named.toml" <<'TOML'
 [nameplate]
@@ -21,7 +21,7 @@ done
 fits_schema "$work/out/compare.json"
 "$swingbank" export --model "$work/named.toml" --bus 2 | holds -q '^// Generator, serial number: 0815' || fail "export loses the nameplate"
 
-# signatures are on paper only, and the page is no wider than a phone
+# signatures appear in print only, not on the screen
 if command -v chromium >/dev/null; then
   shown() {
     sed "s|</main>|</main><script>addEventListener('load', () => { const e = document.querySelector('.signatures'); \
@@ -33,7 +33,7 @@ document.body.innerText = 'shown:' + getComputedStyle(e).display + ';'; })</scri
   [[ $(shown all) == 'shown:block;' ]] || fail "signatures are not in print: $(shown all)"
 fi
 
-# faults of a nameplate: all at once, nothing written
+# errors of a nameplate: all are reported at once, and nothing is written
 rm -rf "$work/out"
 cat "$bent" - >"$work/wrong.toml" <<'TOML'
 [nameplate]

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Each exciter of the list is hidden with values far from its defaults, at sizes of some 20, 100 and up to 1,000 times
-# the noise. It must rank first, be in the 95 % set, or be equivalent to several others; below 1 % it counts as lost,
-# and none may be lost. A selection: SWINGBANK_SIZES="10" (in detection limits of 10). SWINGBANK_KEEP=FOLDER keeps
-# cases and verdicts there and continues from them.
+# Hides each exciter of the config with values far from its defaults, at sizes of about 20, 100 and up to 1,000 times
+# the noise. It counts as found if the verdict names it or its 95 % set contains it, and as lost if its probability is
+# below 1 %. None may be lost. SWINGBANK_SIZES="10" selects sizes, in multiples of the detection limit (10).
+# SWINGBANK_KEEP=FOLDER keeps cases and verdicts there and continues from them.
 # shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Two effects hidden together, in three cases of a used seed in which the search first combines each effect with
-# another partner. The true pair must be in the 95 % set (docs/decisions/61-diagnosis-on-a-reduced-plant.md); without
-# the exchange of partners it was in none. SWINGBANK_KEEP=FOLDER keeps cases and diagnoses there and continues from
+# Two effects hidden together, in three cases in which the search first combines each effect with another partner. The
+# true pair must be in the 95 % set (docs/decisions/61-diagnosis-on-a-reduced-plant.md). Without the exchange of
+# partners it was in none of the three sets. SWINGBANK_KEEP=FOLDER keeps cases and diagnoses there and continues from
 # them.
 # shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"

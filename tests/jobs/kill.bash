@@ -1,8 +1,8 @@
 # To be sourced after lib.bash: kills a run after a given time.
 # shellcheck disable=SC2154,SC2034 # set by lib.bash; `pid` is for those who source this
 
-# begin_and_kill WAY MS COMMAND...: starts it in the background as its own process group, sets `pid`, and after MS
-# milliseconds kills the process, one child, the whole group, or the group with one child stopped before.
+# begin_and_kill WAY MS COMMAND...: starts the command in the background as its own process group, sets `pid`, and after
+# MS milliseconds kills the process, one child, the whole group, or the group after stopping one child.
 begin_and_kill() {
   local way=$1 at=$2 child
   shift 2

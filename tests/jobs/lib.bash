@@ -59,7 +59,7 @@ leaves_nothing() {
 # fits_schema FILE...: JSON results have the common part that docs/reference/report.schema.json describes
 fits_schema() { fits_schema_of report "$@"; }
 
-# fits_schema_of NAME FILE...: the same of docs/reference/NAME.schema.json
+# fits_schema_of NAME FILE...: the same check against docs/reference/NAME.schema.json
 fits_schema_of() {
   python3 - "$SWINGBANK_SOURCE/docs/reference/$1.schema.json" "${@:2}" <<'PYTHON' || fail "not as the schema describes it"
 import json, sys
@@ -78,7 +78,7 @@ sentence='.+ at .+ \(.+\): .+'
 # refuses NAME PATTERN COMMAND...: the command must fail with a message that matches PATTERN
 refuses() { refuses_with 1 "$sentence" "$@"; }
 
-# misused NAME PATTERN COMMAND...: the message about wrong options refers to --help
+# misused NAME PATTERN COMMAND...: as `refuses`, but for wrong options, where the message refers to --help
 misused() { refuses_with 1 '--help' "$@"; }
 
 refuses_with() {

@@ -57,7 +57,7 @@ simulate three --buses 5 >/dev/null 2>"$work/said" && fail "--buses 5 was taken"
 grep -q 'no bus 5' "$work/said" || fail "--buses 5: $(cat "$work/said")"
 simulate three --trip 2:5:1:1 >/dev/null 2>"$work/said" && fail "--trip 2:5:1:1 was taken"
 grep -q 'no bus 5' "$work/said" || fail "--trip 2:5:1:1: $(cat "$work/said")"
-# The winding at bus 2 connects only the unit: either way it is disconnected and runs on without load.
+# The winding at bus 2 connects only the unit. Each of these trips disconnects the unit, which runs on without load.
 for trip in 2:3:1:1 2:3:4:1:1 4:3:2:1:1:1.1; do
   said=$(simulate three --trip "$trip" --integrator lanes 2>&1) || fail "--trip $trip: $said"
 done

@@ -11,7 +11,7 @@ there_and_back() {
     fail "$name: $(cat "$work/notes")"
   "$swingbank" export --model "$work/$name.toml" --out "$work/$name.dyr" >/dev/null
   local again=()
-  while (($# > 0)); do # nothing remains to drop or replace
+  while (($# > 0)); do # the written .dyr has no record to drop or replace
     case $1 in
     --drop | --replace) shift 2 ;;
     *) again+=("$1") && shift ;;

@@ -13,7 +13,7 @@ for section in post environment test runscript; do
   if command -v shellcheck >/dev/null; then shellcheck -s sh -S warning "$work/$section.sh" || fail "%$section"; fi
 done
 grep -q '^From: debian:12$' "$folder/swingbank.def" || fail "not Debian 12"
-# the files are the packages of programs in the build folder of a preset
+# %files names the Debian packages of the programs, in the build folder of a preset
 section_of files >"$work/files"
 read -r file target <"$work/files"
 [[ $(wc -l <"$work/files") == 1 && $file =~ ^build/([a-z]+)/swingbank\*_\*\.deb$ && $target == /packages/ ]] ||

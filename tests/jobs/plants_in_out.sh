@@ -78,7 +78,7 @@ refuses "grouped" "unknown model 'STRANGE' of '1' at bus 30 and 3 more" "$swingb
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" >"$work/inventory"
 grep -q '^10 units: 5 fully covered (50.0 %), 5 partly' "$work/inventory" || fail "inventory says: $(head -1 "$work/inventory")"
 grep -qE "^STRANGE +4 +4 +[0-9]+  no$" "$work/inventory" || fail "inventory: $(cat "$work/inventory")"
-# A header without a frequency: a count of rotors has none either.
+# A .raw header without a frequency: `inventory` does not need it, `plant` does.
 sed '1s/, 60$/,/' "$raw" >"$work/silent.raw"
 "$swingbank" inventory --raw "$work/silent.raw" --dyr "$work/more.dyr" | holds -q '^10 units: 5 fully covered' || fail "inventory without a frequency"
 refuses "no frequency" 'give it with --frequency-hz' "$swingbank" plant --raw "$work/silent.raw" --dyr "$work/more.dyr" --bus 32
@@ -109,7 +109,7 @@ refuses "a short record" "SEXS with 5 parameters .*--complete-records" "$swingba
 grep -q 'has 5 of 6 values: EMAX = 0 ' "$work/notes" || fail "the value is not named: $(cat "$work/notes")"
 grep -q "short.dyr:$(wc -l <"$work/short.dyr"): EMIN = -500 pu (usual range of SEXS: " "$work/notes" || fail "an unusual value: $(cat "$work/notes")"
 
-# A block from `effects --toml` makes a plant.
+# Blocks printed by `effects --toml` can be pasted into a plant file.
 {
   sed '/^\[machine\]/,$d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"
   "$swingbank" effects --toml GENROU IEEET1

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank predict: estimates from records equal those of the network on the same rows when it was judged.
+# swingbank predict: estimates from records equal the network's estimates for the same rows of the dataset in its test.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 export OMP_NUM_THREADS=1
@@ -32,7 +32,7 @@ for path in sorted(glob.glob(f"{work}/data/shards/*.h5")):
         t = numpy.arange(x.shape[1]) / 60
         write(f"row-{n:03d}", t, x)
         if n == 0:
-            # The same from an instrument with another clock, rate and base, after a longer pre-event.
+            # The same row as recorded with another clock, rate and base, and with a longer pre-event window.
             fine = numpy.arange(-120, 2 * len(t) - 1) / 120
             y = numpy.array([numpy.interp(fine, t, c) for c in x])
             y[:2] *= 100 / 250
@@ -62,7 +62,7 @@ estimates = numpy.array([r["estimates"] for r in every["records"]])
 assert estimates.shape == truth.shape and len(truth) == result["test_rows"], (estimates.shape, result["test_rows"])
 mse = ((estimates - truth) ** 2).mean(axis=0)
 said = [p["mse"] for p in result["per_parameter"]]
-# Records have nine digits of single-precision values; the steady level is their median, not their first sample.
+# Tolerance: records have nine digits of single-precision values, and their steady level is a median, not one sample.
 assert numpy.allclose(mse, said, rtol=2e-3), (mse, said)
 assert one["records"][0]["estimates"] == every["records"][0]["estimates"]
 assert abs(one["records"][0]["event_s"] - 0.5) < 0.02, one

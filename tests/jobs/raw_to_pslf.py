@@ -2,8 +2,8 @@
 
     python3 raw_to_pslf.py CASE.raw CASE.dyr OUT.epc OUT.dyd
 
-Numbers go over as they stand, so that both pairs of files are the same case; only what is a quotient in one of the
-formats (per unit in place of MW and Mvar) is computed. Impedances must be per unit (CW = CZ = CM = 1).
+Numbers are copied as text, so that both pairs of files are the same case. Only quotients are computed, where one format
+has per unit and the other has MW and Mvar. Impedances must be per unit (CW = CZ = CM = 1).
 """
 
 import sys
@@ -27,7 +27,7 @@ def sections(path):
 
 
 def per(text, base):
-    """The quotient, as a text that reads back to the nearest double."""
+    """Returns text / base as a text that reads back to the nearest double."""
     return repr(float(Fraction(text) / Fraction(base)))
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A network file with faults that are repaired on request, and models with inactive blocks, in swingbank simulate.
+# A network file with errors that are repaired on request, and models with inactive blocks, in swingbank simulate.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 # case_of NAME LOAD BRANCH: $work/NAME.raw, four buses and the given load and branch

@@ -1,5 +1,5 @@
-"""Checks the schemas of configs/schema: every example that names one fits it, and each mutation below is refused by the
-schema and by the program. Both name the key.
+"""Checks the schemas of configs/schema. Every example that names a schema must conform to it. Schema and program must
+refuse each mutation below and name its key.
 
   schema.py SWINGBANK CONFIGS FILE...    CONFIGS: a copy of configs/, where the mutations are written"""
 import csv
@@ -69,7 +69,7 @@ COMMANDS = {
     "benchmark": ["benchmark", "--model", str(model), "--against", str(model), "--out", str(configs / "out"), "--tests"],
     "records": ["compare", "--model", str(model), "--out", str(configs / "out"), "--record"],
 }
-END = None  # in place of a text: the mutation is added at the end
+END = None  # instead of a text to replace: the mutation is appended to the file
 # kind: text, replacement, and what the program's message contains
 MUTATIONS = {
     "plant": [
@@ -180,7 +180,7 @@ def mutated(text, old, new):
 
 
 def refusal(kind, text):
-    """Returns what the program says of a file that it must refuse."""
+    """Returns the program's error message for a file that it must refuse."""
     file = BASES[kind].with_name("mutated" + BASES[kind].suffix)
     file.write_text(text)
     ran = subprocess.run([swingbank, *COMMANDS[kind], str(file)], capture_output=True, text=True)
@@ -188,7 +188,7 @@ def refusal(kind, text):
     return ran.stderr
 
 
-# Additions to a plant file that no example has, and that both accept.
+# Additions to a plant file that occur in no example; schema and program accept them.
 for text in ('[nameplate]\nowner = "x"\n', '[nameplate]\nmva = 100.0\ntested = "2026-03"\n[nameplate.exciter]\nmodel = "y"\n'):
     whole = BASES["plant"].read_text() + text
     for fault in validators["plant"].iter_errors(tomllib.loads(whole)):

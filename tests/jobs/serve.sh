@@ -27,7 +27,7 @@ session=$(python3 -c 'import json; print(json.load(open("content"))["session"])'
 [[ $session =~ ^[0-9a-f]{32}$ ]] || fail "no session: $session"
 api=${url}api
 
-# the error of a changed model is that of compare
+# the error of a changed model equals the error that compare reports
 expect 200 "$api/change?s=$session" -d '{"step":0,"values":{"GENROU.H":4}}'
 python3 -c 'import json; print(*("%.6g" % c["rms"] for c in json.load(open("content"))["chips"]))' >changed
 sed 's/^H = 6.54 /H = 4.0 /' "$model" >changed.toml
@@ -45,13 +45,13 @@ expect 403 -H 'Origin: http://example.org' "$api/open" -d '{}'
 expect 403 -H 'Origin: null' "$api/open" -d '{}'
 expect 403 -H 'Host: example.org' "$url"
 expect 200 -H "Origin: $base" "$api/open" -d '{}'
-# a session of its own: its steps are not those of the other
+# a new session has no steps of the first one
 other=$(python3 -c 'import json; print(json.load(open("content"))["session"])')
 expect 400 "$api/step?s=$other&k=1"
 expect 200 "$api/step?s=$session&k=1"
 expect 400 "$api/step?s=none&k=0"
 
-# no file but the page's
+# only the page's own files are served
 for path in '../../etc/passwd' '..%2f..%2fetc%2fpasswd' 'page/../../../etc/passwd' 'page/..%2f..%2fetc%2fpasswd' 'page//etc/passwd'; do
   status=$(answer --path-as-is "$url$path")
   [[ $status == 40[034] ]] || fail "status $status for $path"
@@ -68,7 +68,7 @@ for body in '' '{' '[]' 'null' '{"step":0}' '{"step":1e99,"values":{}}' '{"step"
 done
 expect 400 "$api/preview?s=$session" -d '{"seq":1,"step":0,"event":99,"values":{}}'
 expect 400 "$api/curves?s=$session&k=0&e=99"
-# a preview that a newer one has overtaken is left out
+# a preview older than the newest request is not computed (status 204)
 expect 200 "$api/preview?s=$session" -d '{"seq":7,"step":0,"event":0,"values":{"GENROU.H":5}}'
 expect 204 "$api/preview?s=$session" -d '{"seq":6,"step":0,"event":0,"values":{"GENROU.H":5}}'
 

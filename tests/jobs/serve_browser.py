@@ -73,7 +73,7 @@ event = next(at[0] for at, c in chips().items() if "chosen" in c[0])
 page.execute_script("document.querySelector('#bins button').click()")
 until("the channel of the cell", lambda: "chosen" in chips()[event, 0][0], 20)
 
-# drag a slider with the mouse: the chips of this event follow; after it, the number is that of compare
+# drag a slider with the mouse: the chips of this event follow; after the release, the error equals that of compare
 slider = one("slider-GENROU.H")
 before = rms(event, 0)
 page.execute_script("document.getElementById('slider-GENROU.H').scrollIntoView({block: 'center'})")

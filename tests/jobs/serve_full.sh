@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The live page in a browser: the numbers are those of compare, and the saved model those of the page.
+# The live page in a browser: its numbers equal those of compare, and the saved model gives the numbers of the page.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 # shellcheck source=tests/jobs/serve.bash
 source "$(dirname "${BASH_SOURCE[0]}")/serve.bash"

@@ -34,7 +34,7 @@ with h5py.File(folder + "/run.h5") as run:
     both = np.concatenate([run["time"][:][None], run["records"][:].reshape(6, -1), buses])
 # The CSV has 12 significant digits of values up to 10.
 assert np.abs(both.T - rows).max() < 1e-10
-before, during = 120, 126  # at 1 s, just before the fault, and in its midst
+before, during = 120, 126  # samples at 1 s, just before the fault, and in the middle of the fault
 assert rows[before, 7] > 0.95 and rows[during, 7] < 0.2
 assert abs(rows[0, 2] - 0.4) < 1e-9  # 40 MW on 100 MVA
 with h5py.File(folder + "/lanes.h5") as lanes, h5py.File(folder + "/reference.h5") as reference:

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# swingbank simulate --user-model and --attach: a law from a file and disturbances in both integrators; errors are reported.
+# swingbank simulate --user-model and --attach: a user-defined model and disturbances in both integrators; errors.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 networks=$SWINGBANK_SOURCE/configs/networks laws=$SWINGBANK_SOURCE/configs/user_models
@@ -26,8 +26,8 @@ def worst(a, b):
 
 assert worst("law_lanes", "compiled_lanes") < 1e-9  # the CSV has 12 significant digits
 assert worst("law_reference", "compiled_reference") < 1e-6  # two runs at rtol 1e-8
-assert worst("law_lanes", "law_reference") < 1e-4  # what the lanes promise
-assert worst("law_lanes", "plain") > 0.1  # both act
+assert worst("law_lanes", "law_reference") < 1e-4  # accuracy of the SIMD integrator ("lanes")
+assert worst("law_lanes", "plain") > 0.1  # exciter and disturbance act
 PYTHON
 
 refuses "no file" "cannot read the user-defined model at $work/none.toml" simulate --user-model "$work/none.toml" --out "$work/x.csv"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Ranks that train one network together: the training is that of one rank but for rounding, the same twice for one
-# number of ranks, and after kill -9 of any rank it ends with the same network.
+# Ranks that train one network together: except for rounding, the training equals that of one rank. For a given number
+# of ranks it is reproducible, and a run resumed after kill -9 of any rank ends with the same network.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/same_training.bash"
@@ -10,7 +10,7 @@ TINY_DRAWS=200 TINY_EPOCHS=20 tiny_experiment "$work"
 sed -i 's/^split = .*/split = "by-databank-point"/; /^folds/d; s/"gru"/"cnn", "mlp"/' "$work/tiny.toml"
 "$swingbank" generate "$work/tiny_data.toml" --progress none --out "$work/data" >"$work/log" 2>&1 || fail "$(cat "$work/log")"
 
-# train RANKS NETWORK OUT OPTION...: trains on that number of ranks
+# train RANKS NETWORK OUT OPTION...: trains on RANKS ranks
 train() {
   local start=()
   (($1 == 1)) || start=(mpirun --oversubscribe -np "$1")
@@ -20,7 +20,7 @@ train() {
 
 for n in 1 2 3 7; do train "$n" mlp "mlp-$n" --epochs 3 || fail "$n ranks: $(cat "$work/log")"; done
 for n in 1 3; do train "$n" cnn "cnn-$n" --epochs 3 || fail "$n ranks: $(cat "$work/log")"; done
-# Rounding grows with the steps; a wrong share of the rows or another mask of dropout changes the first epoch.
+# Rounding errors grow with the steps. A wrong share of the rows or another dropout mask would change the first epoch.
 /usr/bin/python3 - "$work" <<'PYTHON'
 import json, sys
 def read(network, ranks):

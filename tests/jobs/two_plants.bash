@@ -9,7 +9,7 @@ fleet_file=$work/fleet.toml
 } >"$fleet_file"
 # whole_fleet COMMAND...: runs it; true if both plants are complete
 whole_fleet() { "$@" >"$work/log" 2>&1 && grep -q '^2 plants: .*, 2 adequate[.]$' "$work/log"; }
-# same_fleet OUT: equals $work/whole, without leftover files
+# same_fleet OUT: true if OUT equals $work/whole and has no leftover files
 same_fleet() {
   local file
   for file in fleet.json fleet.csv fleet.html a/plant.json b/plant.json; do

@@ -1,7 +1,7 @@
 // To be preloaded: the program sees an Intel processor of family 6, model 207 (Emerald Rapids), which Debian
 // 12's OpenBLAS does not support, with all features of the real one. The kernel makes the instruction CPUID
-// fault (Linux, arch_prctl(2)), and the fault's handler sets its result. Linked with -z initfirst, so that it
-// runs before OpenBLAS. Exits with 77 if the processor does not support such faults.
+// fault (Linux, arch_prctl(2)), and the fault's handler sets the instruction's result. Linked with -z
+// initfirst, so that it runs before OpenBLAS. Exits with 77 if the processor does not support such faults.
 #include <asm/prctl.h>
 #include <cpuid.h>
 #include <sys/syscall.h>

@@ -4,7 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$SWINGBANK_SOURCE/jobs/run_saving.bash"
 launcher_patience=2
-# Starts a process that lives for some seconds, does not notice its end, and itself ends some seconds later.
+# launcher A B: starts a process that ends after A seconds, does not notice that, and itself ends after B seconds.
 launcher=(/usr/bin/python3 -c 'import os, sys, time
 if os.fork() == 0:
     time.sleep(float(sys.argv[1]))

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Nothing is missing, but three values of fifteen are wrong by 30 %: blind cases of the usual mixture without a hidden
-# effect and with a TGOV1. `calibrate --sparse` must select exactly the three drawn parameters in four of five cases,
-# and never more than two others. SWINGBANK_CASES=36; SWINGBANK_KEEP=FOLDER keeps everything and continues from it.
+# No component is missing, but three of fifteen parameter values are wrong by 30 %. The cases are blind-test cases
+# without a hidden effect and with a TGOV1. `calibrate --sparse` must select exactly the three wrong parameters in four
+# of five cases, and never more than two others. SWINGBANK_CASES sets the number of cases (36); SWINGBANK_KEEP=FOLDER
+# keeps everything and continues from it.
 # shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
