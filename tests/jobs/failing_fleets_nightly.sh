@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# One system call fails in a fleet's diagnosis, on one rank or in the program of one plant: a call on the fleet's output
-# folder, on records and models, or a memory allocation. The run ends in time, complete or with the injected error. One
-# more run completes it.
+# One file call or memory allocation fails in a fleet's diagnosis, on one rank or in the program of one plant. The file
+# calls are those on the fleet's output folder, or those on records and models. The run ends in time, complete or with
+# the injected error. One more run completes it.
 #   SWINGBANK_INJECTIONS=100 bash tests/jobs/failing_fleets_nightly.sh      (24 by default; tests/mpi/campaign.bash)
 # shellcheck disable=SC2154,SC2034 # set by lib.bash, two_plants.bash and failing_calls.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"

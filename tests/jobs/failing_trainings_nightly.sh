@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# One system call fails in a training, at any position: a call on the training's own files (checkpoint, network,
-# result), on its dataset, or a memory allocation. The run ends in time, complete with the same result or with the
-# injected error. One more run gives the same result.
+# One file call or memory allocation fails in a training, at any position. The file calls are those on checkpoint,
+# network and result, or those on the dataset. The run ends in time, complete with the same result or with the injected
+# error. One more run gives the same result.
 #   SWINGBANK_INJECTIONS=300 bash tests/jobs/failing_trainings_nightly.sh      (90 by default)
 # shellcheck disable=SC2154,SC2034 # set by lib.bash and failing_calls.bash; read by tiny_experiment
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"

@@ -26,7 +26,7 @@ expect 0 "dataset $whole" "${make[@]}" --trust --out "$bad"
 expect 0 "dataset $whole" ranks 3 "${make[@]}" --repair --out "$bad"
 expect 0 "every shard agrees with its journal" "$verify" --processes 2 "$bad"
 
-# A journal with other counts.
+# Journal lines with wrong counts of rows, draws or outcomes.
 for edit in 's/"rows":/&1/' 's/"draws":20/"draws":21/' 's/"stable":/&1/' 's/"rows":/&1000000000000000/'; do
   rm -rf "$bad"
   cp -r "$work/data" "$bad"

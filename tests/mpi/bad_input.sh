@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every refusal gives a sentence and a non-zero exit code, and leaves no half-written file.
+# Every refused input gives an error message and a non-zero exit code, and leaves no half-written file.
 source "$(dirname "$0")/common.bash"
 make=("$generate" "$configs/ieee14_genrou_bus3.toml" --draws 40 --draws-per-shard 20 --progress none)
 "${make[@]}" --out "$work/data" >/dev/null 2>&1
@@ -39,12 +39,12 @@ grep -q "bus 77 of fault.except" "$work/output" || fail "not all problems at onc
 [ -z "$(find "$work/limit/shards" -type f)" ] || fail "a half-written shard stayed"
 expect 0 "$whole" "${make[@]}" --out "$work/limit"
 
-# A file system without preallocation (95: EOPNOTSUPP): nothing else is written instead, and the data are complete.
+# A file system without preallocation (error 95, EOPNOTSUPP): the data are written without it and are complete.
 expect 0 "$whole" env LD_PRELOAD="$SWINGBANK_BIN/failing_call.so" FAILING_CALL=fallocate FAILING_ERROR=95 FAILING_AT=1 \
   FAILING_UNDER="$work/unreserved" FAILING_LOG="$work/failing" "${make[@]}" --out "$work/unreserved"
 grep -q "^failed fallocate" "$work/failing" || fail "no space was asked for: $(cat "$work/failing")"
 
-# Damaged shards are detected and made again.
+# Damaged shards are detected and generated again.
 truncate -s 1000 "$work/data/shards/shard-000001.h5"
 expect 1 "truncated or changed shard" "$verify" "$work/data"
 expect 1 "--repair" "${make[@]}" --out "$work/data"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A dataset's card suffices to make the dataset again without its original inputs; the list of attempts gives the
-# outcome of each run.
+# A dataset's card (card.json) suffices to generate the dataset again without its original inputs. The list of attempts
+# gives the outcome of each run.
 source "$(dirname "$0")/common.bash"
 mkdir -p "$work/configs/sets" "$work/configs/nets"
 networks=$SWINGBANK_SOURCE/configs/networks
@@ -53,7 +53,7 @@ for name in shards:
 assert at == len(whole["sample_id"]) and list(whole.attrs["channel_names"]) == ["P", "speed"]
 PYTHON
 
-# A changed card and one of another processor are refused.
+# A changed card, and a card from another processor, are refused.
 sed 's/"seed": 5/"seed": 6/' "$work/card.json" >"$work/changed.json"
 expect 1 "damaged card, or a file that is not a card at $work/changed.json" "$generate" --again "$work/changed.json" --out "$work/x"
 expect 1 "CONFIG in addition at --again" "$generate" "$configs/ieee39_gencls.toml" --again "$work/card.json" --out "$work/x"

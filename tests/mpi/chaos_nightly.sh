@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Kills spread evenly over a run, from its first millisecond to its end: of one process, mpirun, one rank, a stopped rank,
-# or one part of three. After each, one more run completes with the same hash and bytes.
+# Kills one process, mpirun, one rank, a stopped rank, or one of three parts of a dataset, at times spread evenly over a
+# run, from its first millisecond to its end. After each kill, one more run completes with the same hash and bytes.
 #   SWINGBANK_KILLS=500 bash tests/mpi/chaos_nightly.sh      (60 by default; campaign.bash; docs/reference/faults.md has figures)
 source "$(dirname "$0")/common.bash"
 source "$(dirname "$0")/campaign.bash"
@@ -41,8 +41,8 @@ for ((i = from; i < kills; i += stride)); do
       ;;
     *) kill -9 $pid 2>/dev/null || true ;;
   esac
-  # Ranks of a killed mpirun end by themselves, a stopped one does not. OpenMPI's launcher may hang if a rank dies in
-  # MPI_Init (known in 4.1): it is killed after ten seconds, as in jobs/run_saving.bash.
+  # Ranks of a killed mpirun end by themselves, but a stopped rank does not. OpenMPI's launcher may hang if a rank dies
+  # in MPI_Init (known in 4.1): the launcher is killed after ten seconds, as in jobs/run_saving.bash.
   for ((wait = 0; wait < 100; ++wait)); do
     pgrep -f -- "--out $out" >/dev/null || break # ranks have process groups of their own
     [ "$kind" = stopped ] && pkill -9 -f -- "--out $out" || true

@@ -21,7 +21,7 @@ expect() {
   [ "$got" = "$code" ] || { cat "$work/output" >&2; fail "exit code $got instead of $code: $*"; }
   grep -qF -- "$text" "$work/output" || { cat "$work/output" >&2; fail "no '$text' in the output of: $*"; }
 }
-# Prints the number of shards in the journal of a folder.
+# lines FOLDER: prints the number of shards in the folder's journal
 lines() { if [ -e "$1/journal.jsonl" ]; then wc -l <"$1/journal.jsonl"; else echo 0; fi; }
 wait_for_lines() { # folder count
   for _ in $(seq 3000); do

@@ -174,7 +174,7 @@ INTERPOSE(int, flock, (int fd, int what), (fd, what), fd, -1)
 INTERPOSE(int, rename, (const char* from, const char* to), (from, to), from, -1)
 INTERPOSE(int, unlink, (const char* path), (path), path, -1)
 INTERPOSE(int, mkdir, (const char* path, mode_t mode), (path, mode), path, -1)
-// The descriptor is closed nevertheless, as in Linux.
+// A failing close() closes the descriptor nevertheless, as in Linux.
 extern "C" int close(int fd) {
   static const auto real = next<int (*)(int)>("close");
   const bool failed = fails("close", fd);

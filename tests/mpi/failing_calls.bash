@@ -1,10 +1,10 @@
-# Sourced after common.bash and campaign.bash: runs in which one call fails (failing_call.cpp is preloaded). Each must end
-# in time: complete with the same data, or with exit code 1 and the injected reason; the next run repairs the data.
+# Sourced after common.bash and campaign.bash: runs in which one call fails (failing_call.cpp is preloaded). Each must
+# end in time: complete with the same data, or with exit code 1 and the injected reason; the next run repairs the data.
 # shellcheck disable=SC2154,SC2034,SC2016 # set by common.bash; read by the sourcing scripts
 preload=$SWINGBANK_BIN/failing_call.so
 limit=60 # [s]; a run takes about 1 s, but the machine may be busy
 
-# counts RANK FOLDER COMMAND...: prints the number of file calls of a run on a rank below its folder, and of allocations
+# counts RANK FOLDER COMMAND...: runs the command; prints how many file calls below FOLDER and allocations RANK makes
 counts() {
   local rank=$1 folder=$2
   shift 2
@@ -26,7 +26,8 @@ with_preload() {
 declare -A reasons=([5]='Input/output error' [28]='No space left on device' [2]='No such file or directory'
   [4]='Interrupted system call' [122]='Disk quota exceeded' [memory]='bad_alloc|[Mm]emory')
 
-# one_failure ERROR AT RANK FOLDER COMMAND...: sets `ended` to whole, told, missed or wrong, and `what` to a description.
+# one_failure ERROR AT RANK FOLDER COMMAND...: sets `what` to a description, and `ended` to whole (complete data), told
+# (the injected reason), missed (call AT was not reached) or wrong.
 one_failure() {
   local error=$1 at=$2 rank=$3 folder=$4 code=0
   shift 4
@@ -60,9 +61,9 @@ one_failure() {
   esac
 }
 
-# strike ITEM ERROR RANK FOLDER CALLS BEFORE COMMAND...: one_failure in this item's call among those after BEFORE. The
-# number of calls varies slightly between runs: if a run ends before the call, an earlier one is used. `begin_item`
-# prepares the folder; `check_item` compares the result.
+# strike ITEM ERROR RANK FOLDER CALLS BEFORE COMMAND...: one_failure in a call that ITEM selects among the CALLS calls
+# after the first BEFORE ones. The number of calls varies slightly between runs: if a run ends before the selected call,
+# an earlier call is used. `begin_item` prepares the folder; `check_item` compares the result.
 strike() {
   local item=$1 error=$2 rank=$3 folder=$4 of=$5 before=$6 at tries
   shift 6

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# One call fails on one rank of generate, anywhere from the first to the last: input/output, space, quota, names,
-# interruptions, memory. SWINGBANK_INJECTIONS=500 bash tests/mpi/failing_calls_nightly.sh      (200 by default; campaign.bash)
+# One file call or allocation fails on one rank of generate, at any position. Errors: input/output, no space, missing
+# file, interrupted call, quota, no memory.
+#   SWINGBANK_INJECTIONS=500 bash tests/mpi/failing_calls_nightly.sh      (200 by default; campaign.bash)
 # shellcheck disable=SC2154 # failing_calls.bash sets it
 source "$(dirname "$0")/common.bash"
 source "$(dirname "$0")/campaign.bash"
@@ -13,7 +14,7 @@ two=(mpirun --oversubscribe -np 2 "${make[@]}")
 whole=$(hash_of "$work/run")
 [ -n "$whole" ] || fail "no hash"
 cp -r "$work/run" "$work/whole"
-# half of a killed run: its journal has two of five shards
+# state after a run was killed half way: its journal has two of five shards
 head -2 "$work/whole/journal.jsonl" >"$work/two_lines"
 
 # begin KIND: prepares the folder for this kind of run; sets `command`

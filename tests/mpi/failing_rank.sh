@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A failure of one rank ends all ranks with its reason. Otherwise the others would wait forever, which the limit of a
-# minute detects.
+# A failure of one rank ends all ranks, and its reason is reported. If the other ranks waited forever, the time limit of
+# one minute would fail the test.
 source "$(dirname "$0")/common.bash"
 config=$configs/ieee14_genrou_bus3.toml
 on_two() { timeout -k 5 60 mpirun --oversubscribe -np 1 "$@"; }

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Data are on the disk before their name exists: each shard is flushed after its last write and before its renaming, then
-# its folder, and each line of the journal before the next shard. failing_call.cpp records the calls.
+# Data are on the disk before their final name exists: each shard is flushed after its last write and before its
+# renaming, its folder after the renaming, and each journal line before the next shard. failing_call.cpp records the
+# calls.
 source "$(dirname "$0")/common.bash"
 trace() { # NAME COMMAND...: records the command's file calls below $work/NAME in $work/NAME.trace
   local name=$1
@@ -11,7 +12,7 @@ trace() { # NAME COMMAND...: records the command's file calls below $work/NAME i
 cat >"$work/check.py" <<'PYTHON'
 import os, sys
 unflushed, flushed, named, journal = set(), set(), 0, 0
-waiting = None  # folder of a shard that has its name, not flushed yet
+waiting = None  # folder of a renamed shard, not flushed yet
 for line in open(sys.argv[1]):
     kind, _, rest = line.rstrip("\n").partition(" ")
     if kind != "trace": continue

@@ -30,7 +30,7 @@ def records(folder):
     return numpy.concatenate([h5py.File(f)["records"][:] for f in sorted(glob.glob(f"{sys.argv[1]}/{folder}/shards/*.h5"))])
 assert (records("one") == records("single")).all()
 PYTHON
-# Effects attached and varied: the same for any number of ranks, and when resumed.
+# With attached effects and varied parameters, the data are the same for any number of ranks and for a resumed run.
 with_exciter=("$configs/ieee39_genrou_sexs.toml" --draws 60 --draws-per-shard 10 --progress none)
 "$generate" "${with_exciter[@]}" --out "$work/exciter" >"$work/log" 2>&1 || { cat "$work/log"; fail "an exciter attached"; }
 mkdir -p "$work/resumed/shards" # as after a stop half way

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A dataset has the same bytes for any division of the ranks and of the shards' writers; with drawn operating points
-# also when killed and resumed.
+# A dataset has the same bytes for any number of ranks and of writers per shard. With drawn operating points, this also
+# holds for a run that is killed and resumed.
 source "$(dirname "$0")/common.bash"
 shard=16
 make() { # ranks folder options
@@ -19,7 +19,8 @@ for d in two five group uneven; do
   [ "$(hash_of "$work/$d")" = "$first" ] || fail "$d has another hash"
   diff -r "$work/one/shards" "$work/$d/shards" || fail "$d has other bytes"
 done
-# Operating points drawn: the same for any number of ranks and writers, when killed and resumed, and for other shards.
+# Drawn operating points: the rows are the same for any number of ranks and writers, for a killed and resumed run, and
+# for another number of draws per shard.
 points=("$configs/ieee39_genrou_points.toml" --draws 60 --progress none)
 "$generate" "${points[@]}" --draws-per-shard 15 --out "$work/points" >"$work/log" 2>&1 || { cat "$work/log"; fail "operating points"; }
 grep -q '30 operating points; rejected: ' "$work/log" || { cat "$work/log"; fail "redraws are not told"; }

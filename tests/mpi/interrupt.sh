@@ -13,7 +13,7 @@ kill -9 $pid
 wait $pid 2>/dev/null && fail "a killed process cannot succeed"
 made=$(lines "$work/killed")
 [ "$made" -lt 50 ] || fail "killed too late to prove anything"
-head -c -30 "$work/killed/journal.jsonl" >"$work/cut" && cp "$work/cut" "$work/killed/journal.jsonl" # died while it wrote a line
+head -c -30 "$work/killed/journal.jsonl" >"$work/cut" && cp "$work/cut" "$work/killed/journal.jsonl" # cuts the last line
 expect 0 "dataset $whole" "$generate" "${options[@]}" --out "$work/killed"
 [ "$(hash_of "$work/killed")" = "$whole" ] || fail "another hash after kill -9"
 diff -r "$work/whole/shards" "$work/killed/shards" || fail "leftovers or other bytes after kill -9"

@@ -10,7 +10,7 @@ for k in 1 2 3; do "${make[@]}" --part $k/3 --out "$work/part$k" >/dev/null 2>&1
 code=0
 "$merge" "$work/part1" "$work/part2" --out "$work/out" --progress none >"$work/log" 2>&1 || code=$?
 [ $code = 2 ] || { cat "$work/log"; fail "exit code $code while a part is missing"; }
-# killed instead of renaming the fourth shard (failing_call.cpp)
+# a merge that is killed instead of renaming its fourth shard (failing_call.cpp)
 code=0
 FAILING_ERROR=kill FAILING_CALL=rename FAILING_AT=4 FAILING_UNDER=$work/killed/shards FAILING_LOG=$work/failing \
   LD_PRELOAD=$SWINGBANK_BIN/failing_call.so "$merge" "$work"/part? --out "$work/killed" --progress none >"$work/log" 2>&1 || code=$?
@@ -22,7 +22,7 @@ for out in out killed; do
   [ "$(hash_of "$work/$out")" = "$whole" ] || fail "another hash in $out"
 done
 expect 0 "dataset $whole" "${make[@]}" --out "$work/out" # nothing remains to be done
-# A finished dataset is recognised by its manifest: with trust, no shard is read.
+# --trust recognises a finished dataset by its manifest and reads no shard.
 cp -r "$work/whole" "$work/trusted"
 rm "$work/trusted/shards/shard-000003.h5"
 expect 0 "dataset $whole" "${make[@]}" --trust --out "$work/trusted"

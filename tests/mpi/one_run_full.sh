@@ -63,7 +63,7 @@ for ((i = 0; i < 12; ++i)); do # killed at any moment of its start
 done
 expect 0 "dataset $whole" "${make[@]}" --out "$work/killed"
 
-# Leftovers are files that generate itself writes, also behind a link to another place.
+# Only files that generate itself writes count as leftovers, also where the folder is a symbolic link.
 mv "$work/early/shards" "$work/elsewhere"
 ln -s ../elsewhere "$work/early/shards"
 touch "$work/elsewhere/thesis.part" "$work/elsewhere/.shard-000000.h5.part"

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# While one rank draws the databank the others sleep, and all react to a signal; in a group that writes a shard together
-# every rank flushes its own data.
+# While one rank draws the databank, the other ranks sleep, and all ranks react to a signal. In a group that writes a
+# shard together, every rank flushes its own data.
 # shellcheck disable=SC2154 # set by common.bash
 source "$(dirname "$0")/common.bash"
 config=$configs/ieee39_genrou.toml
-# 500,000 points at their distance take minutes and pass the forecast of the draws.
+# Drawing 500,000 points at the config's minimum distance takes minutes, and the forecast of the draws does not abort
+# it.
 options=("$config" --draws 50000000 --faults-per-point 100 --progress none)
 ticks() { awk '{print $14 + $15}' "/proc/$1/stat"; } # processor time in units of 0.01 s
 # ends_softly PID: a signal ends the drawing long before it is complete
@@ -25,7 +26,7 @@ ends_softly $!
 mpirun --oversubscribe -np 3 "$generate" "${options[@]}" --out "$work/data" >"$work/drawing" 2>&1 &
 launcher=$!
 busiest=0 begun=
-for _ in $(seq 600); do # while the drawing rank uses two seconds; the start of the ranks is not counted
+for _ in $(seq 600); do # until the drawing rank has used two more seconds after its first second of processor time
   sleep 0.1
   total=0 busiest=0
   for pid in $(pgrep -P $launcher); do
@@ -41,7 +42,7 @@ waited=$((total - busiest - begun)) drawn=$((busiest - drawn))
 ((waited < drawn / 3)) || fail "two ranks that wait took $waited hundredths of a second beside $drawn of the one that draws"
 ends_softly $launcher
 
-# A flush fails on one rank of the group, so that rank does flush.
+# An injected failure of fsync on one rank of the group ends the run, which shows that this rank flushes.
 small=("$configs/ieee14_genrou_bus3.toml" --draws 60 --draws-per-shard 20 --writer-ranks 3 --progress none)
 for rank in 0 1 2; do
   expect 1 "Input/output error" env FAILING_CALL=fsync FAILING_ERROR=5 FAILING_AT=1 FAILING_RANK=$rank \

@@ -32,7 +32,8 @@ double closest_pair(const Databank& b) {
   return std::sqrt(least);
 }
 
-/// The serial definition: every admissible candidate in order, compared with all points so far.
+/// The serial definition of the databank: every admissible candidate in order, compared with all points so
+/// far.
 std::vector<double> brute_force(const DatasetConfig& c, std::uint64_t points) {
   std::vector<double> values, full = c.effect().default_parameters(), x(c.box.size());
   const std::size_t n = x.size();
@@ -114,7 +115,8 @@ TEST(DatabankDraw, ReportsProgress_WhenTheCountIsUnreachable) {
   }
 }
 
-// Most draws are too close (19 of 20 admissible ones), so that the forecast applies after the first batch.
+// 19 of 20 admissible candidates are too close, so the forecast of the count applies after the first
+// candidates.
 TEST(DatabankDraw, DoesNotAbort_WhenTheCountIsReachable) {
   DatasetConfig c = test::genrou_box();
   c.databank.distance = 2.0;

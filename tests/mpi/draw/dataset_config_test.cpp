@@ -79,7 +79,7 @@ TEST(DatasetConfigFile, RepairsIncompleteCasesOnRequest) {
   EXPECT_EQ(netted.grid.plants.size(), 4U);
 }
 
-/// A parallel branch of the same id: refused, or kept on request, which is part of the hash.
+/// A parallel branch of the same id is refused, or kept on request. The request is part of the hash.
 TEST(DatasetConfigFile, KeepsRepeatedBranchesOnRequest) {
   const Changed files;
   const std::string raw = (files.path / "networks/ieee14_dataset_genrou.raw").string();

@@ -94,8 +94,7 @@ TEST(OperatingPoint, StaysWithinTheConfiguredRanges) {
       const double loading = std::abs(plant.generation) * grid.network.base_mva / plant.mva;
       EXPECT_GE(loading, c.loading_low / c.oversized_high - 1e-12);
       EXPECT_LE(loading, c.loading_high + 1e-12);
-      // Only oversized machines are below the range: three quarters of them, with loading uniform over 2
-      // to 10.
+      // Only oversized machines (base multiplied by 2 to 10) can have a loading below the range.
       oversized += loading < c.loading_low ? 1.0 : 0.0;
       if (grid.network.buses[bus].type == sim::network::BusType::slack) continue;
       const double times = plant.generation.real() / own.generation.real();
@@ -109,8 +108,8 @@ TEST(OperatingPoint, StaysWithinTheConfiguredRanges) {
   EXPECT_NEAR(ratio, 0.8 * 0.95, 0.05);
   EXPECT_LT(v_low, -0.029);
   EXPECT_GT(v_high, 0.029);
-  // P(U(0.1, 1) < 0.1 f) = (0.1 f - 0.1)/0.9 for f uniform over 2 to 10: 0.556 of 12 %; 3,000 machines: +-
-  // 0.5 %.
+  // 12 % of the machines are oversized, by a factor f uniform over 2 to 10. P(U(0.1, 1) < 0.1 f) =
+  // (0.1 f - 0.1)/0.9, on average 0.556. The standard error is 0.5 % for 3,000 machines.
   EXPECT_NEAR(oversized / (10.0 * kBlocks), 0.12 * 0.5 / 0.9, 0.02);
 }
 
@@ -173,8 +172,8 @@ std::size_t channel(const Case& c, const std::string& name) {
   return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
 }
 
-/// Power on the row's base equals that of the power flow for any base, and the record equals that of a
-/// separate grid at this operating point.
+/// Checks rows: their initial power, converted from the row's machine base, equals that of the power flow,
+/// and their record equals that of a separate simulation of the grid at this operating point.
 void expect_rows_are_their_grids(const DatasetConfig& config) {
   Case c(config);
   const store::ShardData d = c.make(0, config.draws);
@@ -205,7 +204,7 @@ void expect_rows_are_their_grids(const DatasetConfig& config) {
                 const double* expected =
                     t.at(static_cast<int>(plant - grid.plants.begin()), static_cast<int>(sim::Channel::P));
                 for (std::size_t k = 0; k < d.samples; ++k)
-                  // Lane widths agree to 1e-9; the record is a float of values up to 10: 1e-6.
+                  // SIMD widths agree to 1e-9, and the record is a float of values up to 10 (1e-6).
                   ASSERT_NEAR(d.records[(row * d.channels + p) * d.samples + k], expected[k], 2e-6) << k;
               });
   }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr auto no_tick = [](std::uint64_t) {};
 
-/// A config of the project at a small size, its databank and a maker.
+/// A dataset config of the project with few draws, its databank and a shard maker.
 struct MadeCase {
   Study study;
   Databank bank;
@@ -61,7 +61,7 @@ TEST(ShardMaking, RowsEqualRecordsOfTheKernel) {
   options.lanes = 1;
   sim::batch::Batch alone(
       c.study.grid,
-      options);  // every plant and channel, one lane: an independent way to the same values
+      options);  // every plant and channel, one event at a time (one lane): computes the values independently
   const std::size_t q = channel_index(c, "Q");
   for (std::size_t row = 0; row < d.rows; row += 5) {
     const Draw draw = sampler.draw(d.sample_id[row]);
@@ -71,7 +71,7 @@ TEST(ShardMaking, RowsEqualRecordsOfTheKernel) {
                 const double* expected =
                     t.at(c.study.plants[draw.recorded[0]], static_cast<int>(sim::Channel::Q));
                 for (std::size_t k = 0; k < d.samples; ++k)
-                  // Lane widths agree to 1e-9; the record is a float of values up to 10: 1e-6.
+                  // SIMD widths agree to 1e-9, and the record is a float of values up to 10 (1e-6).
                   ASSERT_NEAR(d.records[(row * d.channels + q) * d.samples + k], expected[k], 2e-6) << k;
               });
     EXPECT_EQ(d.generator[row], c.study.config.generators[draw.recorded[0]]);
@@ -117,8 +117,8 @@ TEST(ShardMaking, AllVaryGivesARowPerGenerator) {
 
 TEST(ShardMaking, AngleIsInvalidOnlyDuringATerminalFault) {
   MadeCase c("ieee39_gencls_all", 1);
-  // A fault at the terminal of bus 30, 0.1 s: samples in (2.0, 2.1] see V = 0, the one at 2.0 is the value
-  // before.
+  // A fault of 0.1 s at the terminal of bus 30: samples in (2.0 s, 2.1 s] have V = 0; the sample at 2.0 s is
+  // the value before the fault.
   c.study.fault_buses = {c.study.grid.network.bus_index(30)};
   c.study.config.fault.shortest = c.study.config.fault.longest = 0.1;
   const store::ShardData d = c.maker.make(0, 1, no_tick);

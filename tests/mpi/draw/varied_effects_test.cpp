@@ -1,4 +1,5 @@
-// Datasets with effects beyond the .dyr, and with varied parameters of other effects than the machine.
+// Datasets with effects in addition to the .dyr, and with varied parameters of effects other than the
+// machine.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -28,7 +29,7 @@ std::string with_replaced(std::string text, const std::string& from, const std::
 
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
-/// The example with an exciter at a small size, with some texts replaced.
+/// The example config with an exciter, with few draws and with some texts replaced.
 DatasetConfig varied_config(const Changes& changes = {}, std::uint64_t draws = 30) {
   const test::Folder folder;
   std::string text = read_text(kEffectConfigs / "ieee39_genrou_sexs.toml");
@@ -132,7 +133,7 @@ TEST(VariedEffects, PointsKeepTheirDistanceInTheNormalisedSpace) {
           sum += std::pow((b.point(i)[k] - b.point(j)[k]) / (c.box[k].high - c.box[k].low), 2.0);
       least = std::min(least, sum);
     }
-  // The distance was checked in units of the box before scaling: rounding only.
+  // The distance was checked in units of the box before scaling, so the tolerance covers rounding only.
   EXPECT_GE(std::sqrt(least), 0.7 * (1.0 - 1e-12));
   const auto column = [&](std::size_t k) {
     double low = 1e300, high = -1e300;
@@ -148,8 +149,8 @@ TEST(VariedEffects, PointsKeepTheirDistanceInTheNormalisedSpace) {
               ElementsAre(::testing::DoubleNear(20, 2.8), ::testing::DoubleNear(300, 2.8)));
 }
 
-/// Compares every seventh row with a run of a grid whose plant has the row's parameters, on one lane: an
-/// independent way to the values, without the parameters of a job.
+/// Compares every seventh row with a run of a grid whose plant has the row's parameters. The run has one SIMD
+/// lane and no parameters in its job, and thus computes the values independently.
 void expect_rows_are_runs(const DatasetConfig& config) {
   VariedCase c(config);
   const store::ShardData d = c.maker.make(0, config.draws, [](std::uint64_t) {});
@@ -174,7 +175,7 @@ void expect_rows_are_runs(const DatasetConfig& config) {
         [&](sim::batch::Job& job) { return given ? false : (job.event = draw.job.event, given = true); },
         [&](const sim::batch::Job&, const sim::Trajectory& t) {
           const double* q = t.at(index, static_cast<int>(sim::Channel::Q));
-          // Lane widths agree to 1e-9; the record is a float of values up to 10: 1e-6.
+          // SIMD widths agree to 1e-9, and the record is a float of values up to 10 (1e-6).
           for (std::size_t k = 0; k < d.samples; ++k)
             ASSERT_NEAR(d.records[(row * d.channels + 1) * d.samples + k], q[k], 2e-6) << k;
         });
@@ -204,7 +205,7 @@ TEST(VariedEffects, UserDefinedModelsVaryLikeCompiledEffects) {
   EXPECT_EQ(both[0].parameters, both[1].parameters);
   ASSERT_EQ(both[0].records.size(), both[1].records.size());
   for (std::size_t i = 0; i < both[0].records.size(); ++i)
-    // The same equations in another order of operations: 1e-9 of the kernel's, a float of values up to 10.
+    // The same equations in another order of operations agree to 1e-9; records are floats of values up to 10.
     ASSERT_NEAR(both[0].records[i], both[1].records[i], 5e-6) << i;
 }
 

@@ -97,7 +97,7 @@ TEST(DatasetFolder, TruncatedShardIsNamed) {
               HasSubstr("truncated or changed shard at " + file.string()));
 }
 
-/// The journal's line of shard 0, changed by `edit`.
+/// Changes the journal's line of shard 0 by `edit`.
 void edit_line(const std::filesystem::path& folder, const std::function<void(JournalLine&)>& edit) {
   std::string text;
   for (auto& l : read_journals(folder)) {
@@ -107,7 +107,7 @@ void edit_line(const std::filesystem::path& folder, const std::function<void(Jou
   write_text(folder / "journal.jsonl", text);
 }
 
-/// The journal with a line that matches the present shard 0 except for its hash.
+/// Makes the journal's line of shard 0 match the present file, except for the hash of its rows.
 void journal_as_it_is(const std::filesystem::path& folder) {
   edit_line(folder, [&](JournalLine& l) {
     l.bytes = std::filesystem::file_size(folder / l.file);
@@ -229,7 +229,8 @@ TEST(DatasetFolder, NamesFoldersWithoutADataset) {
   EXPECT_THAT(sentence_of([&] { open_dataset(folder.path); }), HasSubstr("holds no dataset.json"));
 }
 
-/// Flips one bit of every `step`-th byte of every file of a dataset, one at a time; each must be detected.
+/// Flips one bit of every `step`-th byte of every file of a dataset, one at a time; each flip must be
+/// detected.
 void flip_every(std::size_t step) {
   const TwoShards folder;
   int flipped = 0;
@@ -269,9 +270,10 @@ TEST(JournalFile, DropsAHalfWrittenLastLine) {
   EXPECT_EQ(lines[2].shard, 2u);
 }
 
-/// The journal with a second line for shard 1 that has another number of rows.
+/// Returns a second journal line for shard 1, with another number of rows. `file`: a journal that has only
+/// the line of shard 1.
 std::string contradiction(const std::filesystem::path& file) {
-  JournalLine other = parse_journal_line(read_text(file));  // of shard 1, which ended first
+  JournalLine other = parse_journal_line(read_text(file));  // line of shard 1, which was finished first
   other.rows += 1;
   return journal_text(other);
 }
