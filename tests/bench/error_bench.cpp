@@ -16,7 +16,7 @@ using namespace swingbank::sim;
 struct Worst {
   double error = 0.0;
   std::string where;
-  int compared = 0, beyond = 0, differ = 0;  ///< events: compared, beyond 1e-4, with another outcome
+  int compared = 0, beyond = 0, differ = 0;  ///< numbers of events: compared, error above 1e-4, other outcome
 };
 
 Trajectory reference(const grid::Grid& grid, const batch::Job& job) {

@@ -64,7 +64,7 @@ void round(Case& c, const grid::Grid& grid, const std::vector<batch::Job>& list)
   c.rates.push_back(c.events / (cpu_seconds() - start));
 }
 
-/// Multiply-adds of sixteen independent packs: GFLOP/s, two per multiply-add.
+/// Peak rate by multiply-adds of sixteen independent SIMD packs [GFLOP/s]; a multiply-add counts as two.
 double peak_gflops() {
   constexpr int kSums = 16, kTimes = 20'000'000;
   P8 sum[kSums];
@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
       });
 #ifdef SWINGBANK_COUNT_FLOPS
     for (auto& c : cases) {
-      if (c.lanes != 4 && c.lanes != 8) continue;  // packs of doubles are counted
+      if (c.lanes != 4 && c.lanes != 8) continue;  // operations are counted for packs of doubles only
       round(c, c.controls ? with_controls : grid, list);
       std::printf("%-40s %7.2f million operations per event, %d events\n", c.what, 1e-6 * c.operations,
                   c.events);

@@ -37,7 +37,7 @@ def plant(folder, *controls, machine=SOURCE / "configs/plants/ieee14_bus2.toml")
 
 
 def simulated(folder, *controls):
-    """Plant file of the machine at bus 2, and four events of 15 s with these controls and a PMU's noise."""
+    """Returns the plant file of the machine at bus 2, and four records of 15 s with these controls and PMU noise."""
     case = SOURCE / "configs/networks/ieee14_genrou"
     records = []
     for event in ("--fault 5:2.007:2.107", "--load-step 4:30:10:2.007:10.007", "--fault 4:2.007:2.087",
@@ -68,7 +68,7 @@ def shown(name, milliseconds, bar):
 
 
 def requests(url):
-    """Previews over one connection, and the memory of the server."""
+    """Returns the times of preview requests over one connection [ms]."""
     parts = urllib.parse.urlsplit(url)
     connection = http.client.HTTPConnection(parts.hostname, parts.port)
     connection.request("POST", parts.path + "api/open", "{}")

@@ -1,6 +1,6 @@
-// A training step on the ranks of mpirun, each with one thread, against one process with as many threads, in
-// alternation; and the efficiency of more machines by the measured step and a network's latency and
-// bandwidth.
+// Time of a training step on the ranks of mpirun, each with one thread, against one process with as many
+// threads, in alternation. Also the efficiency of more machines, computed from the measured step and a
+// network's latency and bandwidth.
 //   mpirun -np 2 --bind-to none bench_ranks [NETWORK] [SAMPLES] [BATCH] [ROUNDS] [GBIT_PER_S] [LATENCY_US]
 #include <ATen/ATen.h>
 #include <ATen/Parallel.h>
@@ -32,7 +32,7 @@ double median(std::vector<double> v) {
   std::sort(v.begin(), v.end());
   return v[v.size() / 2];
 }
-/// Waits for all ranks without using their cores.
+/// Barrier of all ranks that does not use their cores while it waits.
 void meet() {
   MPI_Request request;
   MPI_Ibarrier(MPI_COMM_WORLD, &request);

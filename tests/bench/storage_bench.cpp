@@ -1,7 +1,7 @@
 // Speed of the storage: shards against plain writes of the same bytes, alternating in one run.
 //   bench_storage FOLDER MEGABYTES ROUNDS
 // Prints medians and, for each kind of shard, the ratio of the median times; 1 is as fast as a plain write.
-// "As generate": by the function of the ranks, with the hashes of rows and file.
+// "As generate": written by the function that `generate` uses, with the hashes of rows and file.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -37,7 +37,7 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Rows as of the 39-bus grid: six channels, 15 s at 120/s.
+/// Rows of the same size as for the 39-bus grid: six channels, 15 s at 120/s.
 store::ShardData rows_of(double megabytes, bool int16) {
   store::ShardData d;
   d.channels = 6;

@@ -1,7 +1,7 @@
 #pragma once
-// A grid of any size by construction: copies of the 39-bus network with eleven of its lines cut in the
-// middle, 50 buses and 10 machines each, on a torus with three tie lines to the next copy and to the one a
-// row further.
+// A grid of any size: copies of the 39-bus network, arranged on a torus. Each copy has 50 buses, because
+// eleven lines are cut in the middle, and 10 machines. Three tie lines lead to the next copy, and three to
+// the copy one row further.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace swingbank::sim {
 
 namespace tiled_detail {
-constexpr int kCuts = 11, kNumbers = 100;  ///< lines cut, bus numbers of a copy
+constexpr int kCuts = 11, kNumbers = 100;  ///< number of lines cut; range of bus numbers of a copy
 
 /// The network with the first lines cut in two halves.
 inline network::Network cut_lines(network::Network net) {
@@ -48,8 +48,8 @@ inline network::Branch tie(int from, int to, const std::string& circuit) {
 }
 }  // namespace tiled_detail
 
-/// raw: the 39-bus network. Loads are up to 3 % smaller than there, and power flows between the copies. Each
-/// copy keeps its swing bus, so that no single machine balances all copies.
+/// `raw`: the 39-bus network. Loads of the copies are up to 3 % smaller than in `raw`, and power flows
+/// between the copies. Each copy keeps its swing bus, so that no single machine balances all copies.
 inline network::Network tiled_network(const std::filesystem::path& raw, int tiles) {
   const network::Network one = tiled_detail::cut_lines(formats::read_raw(raw));
   const auto buses = static_cast<int>(one.buses.size());
@@ -99,8 +99,8 @@ inline network::Network tiled_network(const std::filesystem::path& raw, int tile
   return net;
 }
 
-/// Records of all copies from those of one; `controls`: TGOV1, IEEEST and SEXS at their defaults on every
-/// machine.
+/// Returns the .dyr records of all copies from those of one; `controls`: adds TGOV1, IEEEST and SEXS at their
+/// defaults to every machine.
 inline std::vector<formats::DyrRecord> tiled_dynamics(const std::filesystem::path& dyr, int tiles,
                                                       bool controls) {
   std::vector<formats::DyrRecord> one = formats::read_dyr(dyr), all;

@@ -110,7 +110,7 @@ std::string refusal(const mpi::store::Dataset& dataset, const StreamOptions& opt
   }
 }
 
-/// Changes shard 1 without its journal entry; only its length is journalled anew.
+/// Changes shard 1. Its journal line gets the new length and file hash, but keeps the hash of the old rows.
 mpi::store::Dataset with_shard_1_changed(const mpi::store::Dataset& dataset,
                                          const std::function<void(mpi::store::ShardData&)>& change) {
   const auto file = dataset.shards[1].path;
@@ -181,8 +181,8 @@ TEST(EpochOrder, DependsOnSeedAndEpochOnly) {
   auto sorted = order;
   std::sort(sorted.begin(), sorted.end());
   EXPECT_EQ(sorted, rows);
-  // The mean displacement of a uniform shuffle is a third of the length; blocks in shuffled windows are close
-  // to it.
+  // The mean displacement of a uniform shuffle is a third of the length. The order shuffles blocks of rows,
+  // then rows within windows, and comes close to a third.
   double displacement = 0.0;
   for (std::size_t i = 0; i < order.size(); ++i) displacement += std::abs(double(order[i]) - double(i));
   EXPECT_GT(displacement / 40000.0 / 40000.0, 0.25);
@@ -408,7 +408,7 @@ TEST(Pca, ReconstructionErrorMatchesItsReport) {
     std::vector<float> x(400 * values), score(2 * pca.length()), back(values);
     stream.read(rows, x.data());
     for (std::size_t c = 0; c < 2; ++c) {
-      // Dropped energy over the variance of a second about its mean second.
+      // Energy of the residual divided by the variance of the one-second segments about their mean.
       std::vector<double> mean(20);
       for (std::size_t i = 0; i < 400 * samples; ++i)
         mean[i % 20] +=
@@ -445,7 +445,8 @@ TEST(TargetScale, IsFittedOnTheGivenRows) {
   const std::vector<double> values = {1.0, 0.3, 3.0, 0.3, 100.0, 0.3};
   const auto scale = TargetScale::fit(values, 2, std::vector<std::uint64_t>{0, 1});
   EXPECT_EQ(scale.mean, (std::vector<double>{2.0, 0.3}));
-  EXPECT_EQ(scale.unit, (std::vector<double>{1.0, 0.3}));  // deviation of 1 and 3; magnitude of the constant
+  EXPECT_EQ(scale.unit,
+            (std::vector<double>{1.0, 0.3}));  // standard deviation of 1 and 3; magnitude of the constant
 }
 
 }  // namespace

@@ -29,9 +29,9 @@ struct Folder {
 struct Plan {
   std::size_t rows = 400, rows_per_shard = 150, samples = 40;
   double rate = 20.0;
-  int rows_per_point = 1;                ///< neighbouring rows with the same parameters
+  int rows_per_point = 1;                ///< number of consecutive rows with the same parameters
   std::optional<std::size_t> spoil_row;  ///< gets a value that is not a number
-  int shift_generator = 0;               ///< its records are shifted by 100
+  int shift_generator = 0;               ///< generator whose records are shifted by 100; 0: none
   bool electrical = false;               ///< also Q and V, and an event after a quarter of the samples
   std::uint64_t seed = 11;
 };

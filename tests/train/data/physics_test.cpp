@@ -32,7 +32,7 @@ TEST(Physics, ContainsTheVariablesOfTheMachineEquations) {
   std::vector<float> out(physics.channels() * physics.bins() + physics.levels());
   const auto in = record(rate, samples);
   physics.apply(in.data(), samples, out.data());
-  // the bin that begins at 2.0 s has 1/30 s; the one before it a single sample
+  // the bin that begins at 2.0 s is 1/30 s long; the bin before it is a single sample
   const std::size_t at = 180;
   const auto value = [&](std::size_t channel, std::size_t bin) {
     return out[channel * physics.bins() + bin];
@@ -151,7 +151,7 @@ TEST(Whitening, ShrinksNoisyComponentsAndIncludesTheLevel) {
   std::size_t shrunk = 0;
   for (std::size_t i = 0; i < kept; ++i) {
     EXPECT_NEAR(mean_square(clean, i), 1.0, 0.1) << i;
-    EXPECT_LT(mean_square(noisy, i), 1.3) << i;  // signal and noise together, after the Wiener factor
+    EXPECT_LT(mean_square(noisy, i), 1.3) << i;  // signal plus noise, multiplied by the Wiener factor
     shrunk += mean_square(noisy, i) < 0.5;
   }
   EXPECT_GT(shrunk, 0u);

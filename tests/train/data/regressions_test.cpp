@@ -1,4 +1,4 @@
-// Signals regressed on pairs of others, and steps of a second each.
+// Regressions of each signal on pairs of other signals, and records divided into steps of one second.
 #include "train/data/regressions.hpp"
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace swingbank::train::data {
 namespace {
 
-/// Index of the first of two coefficients of `of` for the pair `a` < `b`.
+/// Index of the first of two coefficients of the regression of signal `of` on the signals `a` < `b`.
 std::size_t place_of(std::size_t signals, std::size_t of, std::size_t a, std::size_t b) {
   std::size_t at = 0;
   for (std::size_t y = 0; y < signals; ++y)

@@ -28,7 +28,7 @@ std::vector<float> swing_record() {
   double delta = 0;
   for (std::size_t k = 0; k < kSwingSamples; ++k) {
     const double t = static_cast<double>(k) / kSwingRate, h = 1e-5;
-    constexpr int kParts = 20;  // of a sampling interval, for the angle
+    constexpr int kParts = 20;  // integration steps of the angle per sampling interval
     for (int part = 0; k > 0 && part < kParts; ++part)
       delta +=
           constants::turn * 60 * speed_at(t - (part + 0.5) / (kSwingRate * kParts)) / (kSwingRate * kParts);

@@ -101,7 +101,7 @@ TEST(Experiment, RegressionsAndSecondsAsStepsRequireTheirInputForms) {
 TEST(Experiment, AcrossDatasetsEveryNetworkUsesTheTrainingRows) {
   const std::filesystem::path folder = testing::TempDir();
   const auto across = [&](const std::string& rows) {
-    (void)experiment("", "", "");  // its datasets
+    (void)experiment("", "", "");  // writes the dataset configs that the experiment names
     std::ifstream in(folder / "experiment.toml");
     std::string text(std::istreambuf_iterator<char>(in), {});
     const std::string split = "split = \"leave-one-generator-out\"\nfolds = [30, 31]\n";

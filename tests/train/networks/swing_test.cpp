@@ -1,4 +1,4 @@
-// The layer of the swing equation: exact without noise, in any order of the outputs; refuses other
+// The layer of the swing equation is exact without noise, for any order of the outputs, and refuses other
 // parameters.
 #include <ATen/ATen.h>
 #include <gtest/gtest.h>

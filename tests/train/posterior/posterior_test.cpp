@@ -36,7 +36,7 @@ TEST(Mixture, QuantileIsTheInverse) {
 }
 
 TEST(Together, IsTheMeanOfOneAndTheProductOfSeveral) {
-  // two normal posteriors of the logit: their product is between them, nearer to the one of smaller variance
+  // two normal posteriors of the logit: the mean of their product is nearer to that of the smaller variance
   Mixture vague, sure;
   vague.weight = sure.weight = {1.0, 0.0, 0.0, 0.0};
   vague.deviation = {0.4, 1.0, 1.0, 1.0};
@@ -52,8 +52,8 @@ TEST(Together, IsTheMeanOfOneAndTheProductOfSeveral) {
   EXPECT_LT(of({0, 1, 2}), of({0, 1}));
 }
 
-/// Posteriors and true values drawn from them. The standard deviation of the scores is `too_sure` times the
-/// stated one.
+/// Posteriors and true values drawn from them. The standard deviation of the true values' normal scores is
+/// `too_sure` times the standard deviation of the posteriors.
 struct World {
   Posteriors posteriors;
   std::vector<double> places;
@@ -122,7 +122,7 @@ TEST(CoverageFull, TarpDetectsCorrelationsMissedByMarginals) {
   EXPECT_LT(c.tarp.by_chance(), 1e-6);
 }
 
-/// Network with one input number per row, which is both its features and its two outputs.
+/// Network with one input number per row, which is returned as its features and as both of its outputs.
 class Shown final : public networks::Network {
  public:
   at::Tensor forward(const at::Tensor& x, const networks::StepRows*) override {

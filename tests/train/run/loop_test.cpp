@@ -78,7 +78,7 @@ struct Prepared {
   data::RowSplit split;
   std::vector<float> targets;
   data::Features features;
-  loop::LoopData data;  // last: it refers to the others
+  loop::LoopData data;  // declared last, because it refers to the members above
 };
 
 void expect_resumed_run_equals_unbroken(const std::string& name) {
@@ -108,7 +108,7 @@ void expect_resumed_run_equals_unbroken(const std::string& name) {
   loop::LoopReport whole, broken;
   const auto expected = train(name + "-a", {}, whole);
   const auto got =
-      train(name + "-b", {8, 3}, broken);  // 4 batches per epoch: stops after 2 epochs, then within one
+      train(name + "-b", {8, 3}, broken);  // 4 batches per epoch: stops after 2 epochs, then within an epoch
   EXPECT_EQ(got, expected) << name;
   EXPECT_EQ(broken.epochs, 4u);
   EXPECT_EQ(broken.best_epoch, whole.best_epoch);
@@ -198,7 +198,7 @@ TEST(Training, LearnsFromTrueLabelsOnly) {
   EXPECT_EQ(learnt["generator"], 33);
   EXPECT_EQ(learnt["test_rows"], 80);
   EXPECT_EQ(learnt["train_rows"].get<int>() + learnt["validation_rows"].get<int>(), 720);
-  // The constant third parameter is learnt exactly and lowers the mean over all.
+  // The constant third parameter is learnt exactly and lowers the mean over all three parameters.
   EXPECT_NEAR(learnt["mse_varied_only"].get<double>() / learnt["mse"].get<double>(), 1.5, 1e-3);
   EXPECT_TRUE(learnt["per_parameter"][2]["relative"].is_null());
   EXPECT_EQ(run(world.stream, r), RunOutcome::already_done);
@@ -207,8 +207,8 @@ TEST(Training, LearnsFromTrueLabelsOnly) {
   r.shuffle_labels = true;
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);
   const json shuffled = result_of(r);
-  // Test rows keep their labels, so they are unpredictable. The quotient scatters by some per cent for 80
-  // rows, and slight overfitting raises it further.
+  // Only training labels are shuffled, so the labels of test rows are unpredictable. The ratio scatters by
+  // some per cent for 80 rows, and slight overfitting raises it further.
   EXPECT_GT(shuffled["ratio"], 0.9);
   EXPECT_LT(shuffled["ratio"], 1.25);
 }

@@ -91,7 +91,7 @@ TEST(SavedNetwork, EqualsTheTrainedNetwork) {
     EXPECT_EQ(info.left_out, 33);
     EXPECT_EQ(info.rate, 16.0);
     EXPECT_FALSE(info.fault_start);  // absent in synthetic data
-    // The result's errors on the test rows are those of the saved network, row by row.
+    // The errors in the training's result equal those of the saved network, which estimates row by row.
     const data::RowSplit split = data::leave_one_out(world.stream.labels(), {33, 0.1, 1});
     std::vector<double> square(3, 0.0);
     for (const std::uint64_t row : split.test) {
@@ -133,7 +133,7 @@ TEST(SavedNetwork, EqualsTheTrainedNetworkOnPhysicalChannels) {
   EXPECT_NEAR(square, result["per_parameter"][0]["mse"].get<double>(), 1e-3 * square);
 }
 
-/// Data of the world, whose training rows draw a noise level.
+/// Synthetic data, and a training run in which each training row draws its noise level.
 struct NoisyRuns {
   SavedWorld world;
   RunRequest request;
@@ -307,7 +307,7 @@ TEST(TargetScale, ShiftsANegativeRangeToZero) {
   const data::TargetScale scale = data::TargetScale::fit(values, 2, rows, low);
   EXPECT_EQ(scale.origin, (std::vector<double>{-5, 0}));
   EXPECT_GT(scale.scaled(-4.9, 0), 0.0);                          // representable by a ReLU
-  EXPECT_NEAR(scale.raw(scale.scaled(-3.7, 0), 0), -3.7, 1e-15);  // rounding
+  EXPECT_NEAR(scale.raw(scale.scaled(-3.7, 0), 0), -3.7, 1e-15);  // equal up to rounding
   EXPECT_EQ(scale.scaled(2.0, 1), 2.0 / scale.unit[1]);
 }
 

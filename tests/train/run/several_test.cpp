@@ -8,7 +8,8 @@
 namespace swingbank::train::run {
 namespace {
 
-/// Plant 1 has four rows, plant 2 two, and plant 1 of another generator three. One parameter and its double.
+/// Rows of three plants: plant 1 of generator 30 has four, plant 2 of generator 30 two, and plant 1 of
+/// generator 31 three. The parameters are the plant's number and its double.
 data::Labels labels() {
   data::Labels l;
   l.parameters = 2;
@@ -44,9 +45,9 @@ TEST(Several, ErrorsOfOppositeSignAverageOut) {
   for (std::size_t i = 0; i < errors.size(); ++i) estimates[2 * i] += errors[i];
   const auto found = several_json(labels(), kAll, estimates);
   ASSERT_EQ(found.size(), 3u);
-  EXPECT_DOUBLE_EQ(found[0]["mse_of_mean"], 9.0 / 4);              // of two plants and two parameters
-  EXPECT_NEAR(found[1]["mse_of_mean"].get<double>(), 0.0, 1e-20);  // 3, 0, -3
-  EXPECT_DOUBLE_EQ(found[2]["mse_of_mean"], 1.0 / 4);              // all four
+  EXPECT_DOUBLE_EQ(found[0]["mse_of_mean"], 9.0 / 4);  // one record: mean over two plants and two parameters
+  EXPECT_NEAR(found[1]["mse_of_mean"].get<double>(), 0.0, 1e-20);  // three records: errors 3, 0, -3
+  EXPECT_DOUBLE_EQ(found[2]["mse_of_mean"], 1.0 / 4);              // all records: errors 3, 0, -3, 4
   EXPECT_DOUBLE_EQ(found[2]["records"], 3.5);
   EXPECT_TRUE(found[0]["mse_of_product"].is_null());
   const auto exact = several_json(labels(), kAll, estimates, [](std::span<const std::size_t> rows) {
