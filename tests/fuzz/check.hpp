@@ -1,6 +1,6 @@
 #pragma once
-// Properties after an input was read without error: all computed values are finite, or refused with a
-// sentence.
+// Required properties after an input was read without error: all computed values are finite, or an error
+// message refuses them.
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -65,8 +65,9 @@ inline void check_round_trip(const sim::network::Network& network) {
   }
 }
 
-/// Reads a network by `read` twice: repeated equipment is refused, then omitted. Returns true and fills
-/// `lenient` if the second way succeeds; `whole` is true and `strict` filled if the first succeeds.
+/// Reads a network twice by `read`: the first reading refuses repeated equipment, the second omits it.
+/// Returns whether the second reading succeeds, and then fills `lenient`. If the first reading succeeds,
+/// `whole` is true and `strict` is filled.
 template <class Read>
 bool read_both_ways(const Read& read, sim::formats::RawOptions options, sim::network::Network& strict,
                     sim::network::Network& lenient, bool& whole) {

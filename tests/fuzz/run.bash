@@ -53,7 +53,7 @@ run_target() {
     {
       echo "fuzz $1: found something, see $found"
       grep -m 3 -E 'violated|runtime error|ERROR' "$found/log.txt" || tail -n 5 "$found/log.txt"
-      # keeps the input if the machine is discarded
+      # prints small inputs, so that the log keeps them if the machine is discarded
       find "$found" -type f ! -name log.txt -size -3k -printf '%f, in base64: ' -exec base64 -w 0 {} \; -printf '\n'
     } | tee "$found/summary.txt" >&2
     return 1

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Signals and kills spread evenly over the batch scripts of databank, generate and a fold, from the first millisecond to the
-# end, with an emulated scheduler: SIGUSR1 before the time limit, SIGTERM to the script, SIGTERM to all and SIGKILL after a
-# grace (preemption), SIGKILL of the script and then of what it left, SIGKILL of all at once (a node that fails). The job is
-# started again until it ends, and ends in the same bytes.
+# Signals and kills, with an emulated scheduler, at times spread evenly over the batch scripts of databank, generate and
+# a fold. Kinds: SIGUSR1 to the script (warning before the time limit); SIGTERM to the script; SIGTERM to all processes
+# and SIGKILL two seconds later (preemption); SIGKILL of the script and then of its remaining processes; SIGKILL of all
+# processes at once (failure of the node). The job is started again until it ends, and must give the same bytes.
 #   SWINGBANK_KILLS=100 bash tests/slurm/chaos_nightly.sh      (20 by default; tests/mpi/campaign.bash)
-# shellcheck disable=SC2154,SC2034 # what lib.bash sets; what tiny_experiment reads
+# shellcheck disable=SC2154,SC2034 # set by lib.bash; read by tiny_experiment
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/tiny_experiment.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/same_training.bash"
@@ -17,7 +17,7 @@ export PATH=$work/bin:$PATH STUB=$work/stub OMP_NUM_THREADS=1 OMPI_ALLOW_RUN_AS_
 export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin} SWINGBANK_SITE=$work/site.conf SWINGBANK_EXPERIMENT=$work/tiny.toml SWINGBANK_PRESET=quick
 sed '/^launcher=/d' "$SWINGBANK_SOURCE/slurm/site.conf" >"$SWINGBANK_SITE"
 echo 'launcher="mpirun --oversubscribe"' >>"$SWINGBANK_SITE"
-# A requeue ends the job's processes, as Slurm does.
+# scontrol requeue: ends the job's processes, as in Slurm.
 cat >"$work/bin/scontrol" <<'STUB'
 #!/usr/bin/env bash
 [[ $1 == requeue ]] || exit 0
@@ -25,7 +25,7 @@ touch "$STUB/requeued"
 group=$(ps -o pgid= -p $PPID | tr -d ' ')
 setsid bash -c "sleep 0.2; kill -9 -- -$group" >/dev/null 2>&1 &
 STUB
-# A retry after a crash: the emulated scheduler starts it.
+# sbatch, which job.bash calls for a retry after a crash: `finish` then starts the job again.
 cat >"$work/bin/sbatch" <<'STUB'
 #!/usr/bin/env bash
 touch "$STUB/requeued"
@@ -33,7 +33,7 @@ echo 7
 STUB
 chmod +x "$work"/bin/*
 
-# start STAGE OUT: one attempt, a process group of its own; sets `pid`
+# start STAGE OUT: starts one attempt in a separate process group; sets `pid`
 start() {
   rm -f "$STUB/requeued"
   mkdir -p "$2/log"
@@ -43,7 +43,7 @@ start() {
     SLURM_RESTART_COUNT=$attempts setsid bash "$SWINGBANK_SOURCE/slurm/$1.sbatch" >>"$work/log" 2>&1 &
   pid=$!
 }
-# finish STAGE OUT: attempts until one ends by itself; a job ends with 0, and one that was requeued is started again
+# finish STAGE OUT: starts attempts, six in all, until one ends with exit code 0 and without a requeue
 finish() {
   local code
   for (( ; attempts < 6; )); do
@@ -54,7 +54,7 @@ finish() {
   done
   return 1
 }
-# made STAGE OUT: what a stage leaves, a line per file
+# made STAGE OUT: prints the results of a stage, one line per file
 made() {
   case $1 in
     databank) (cd "$2" && sha256sum data-databank-*.h5) ;;
@@ -62,7 +62,7 @@ made() {
     fold) essence "$2/results" ;;
   esac
 }
-# ready STAGE OUT: what the stages before it made
+# ready STAGE OUT: copies the results of the earlier stages to OUT
 ready() {
   mkdir -p "$2"
   if [[ $1 != databank ]]; then cp "$work/whole"/data-databank-*.h5 "$2"; fi

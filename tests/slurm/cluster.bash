@@ -13,7 +13,7 @@ cluster_fail() {
   return 1
 }
 
-# cluster_retry SECONDS COMMAND...: until it succeeds
+# cluster_retry SECONDS COMMAND...: repeats the command until it succeeds, for at most SECONDS
 cluster_retry() {
   local tenths=$(($1 * 10)) i
   shift
@@ -33,7 +33,7 @@ cluster_folders() {
 }
 
 cluster_munge() {
-  # Own key and socket: a munged of the machine is neither needed nor disturbed.
+  # With a separate key and socket, a munged of the machine is neither needed nor disturbed.
   (umask 077 && head -c 64 /dev/urandom >"$cluster_root/key/munge.key")
   chown munge:munge "$cluster_root/key/munge.key"
   setpriv --reuid=munge --regid=munge --clear-groups munged --force \
@@ -52,10 +52,10 @@ SlurmctldHost=$(hostname -s)(127.0.0.1)
 SlurmctldPort=$first_port
 SlurmUser=slurm
 AuthType=auth/munge
-# A requeued job may start again only after cred_expire seconds (120 if not said).
+# A requeued job may start again only after cred_expire seconds (default 120).
 AuthInfo=socket=$cluster_root/munge/socket,cred_expire=5
 CommunicationParameters=NoCtldInAddrAny,NoInAddrAny
-# What a container has: no cgroups, and a core count that the node lines state rather than the machine.
+# For containers: no cgroups, and the number of cores from the node lines below instead of the machine.
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 SlurmdParameters=config_overrides
@@ -87,8 +87,8 @@ CONF
   } >"$cluster_root/etc/hosts"
 }
 
-# Each slurmd has its own host name and its own folder behind the one PMIx path: else the ranks of two "nodes" take
-# each other for neighbours in shared memory.
+# Each slurmd has its own host name, and its own folder mounted at the common PMIx path. Otherwise the ranks of the two
+# emulated nodes would try to use shared memory with each other.
 cluster_node() {
   install -d "$cluster_root/spool/$1" "$cluster_root/pmix-$1"
   # shellcheck disable=SC2016 # expanded by the inner shell
@@ -118,7 +118,7 @@ cluster_start() {
   cluster_retry 30 cluster_idle || cluster_fail "nodes do not come up"
 }
 
-# cluster_end PID-FILE NAME: ends the daemon if that process is still the one
+# cluster_end PID-FILE NAME: ends the process of PID-FILE, if its name is still NAME
 cluster_end() {
   local pid
   pid=$(cat "$1" 2>/dev/null) || return 0

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# slurm/job.bash with a stub in place of Slurm: a job that was killed is submitted anew without the node it failed on, one
-# that may not be requeued goes on as a new job, and the jobs behind wait for the new one.
-# shellcheck disable=SC2154,SC2034 # what lib.bash sets; what job.bash reads
+# slurm/job.bash with a stub in place of Slurm: a killed job is submitted again without the node on which it failed. A
+# job that may not be requeued continues as a new job, and the dependent jobs wait for the new job.
+# shellcheck disable=SC2154,SC2034 # set by lib.bash; read by job.bash
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/lib.bash"
 mkdir -p "$work/bin" "$work/out/log"
 export PATH=$work/bin:$PATH STUB=$work/stub SWINGBANK_OUT=$work/out SWINGBANK_SITE=$work/site.conf
@@ -26,7 +26,7 @@ cat >"$work/bin/srun" <<'STUB'
 [[ "$*" != *--nodelist=bad* ]]
 STUB
 chmod +x "$work"/bin/*
-# job STAGE STATUS [VARIABLE=VALUE...]: what a batch script does at its end
+# job STAGE STATUS [VARIABLE=VALUE...]: the end of a batch script whose program has ended with exit code STATUS
 job() {
   rm -f "$STUB/sbatch" "$STUB/scontrol"
   printf 'databank 101\ngenerate 102\nfold 103\ntables 104\n' >"$work/out/log/jobs"

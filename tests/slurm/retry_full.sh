@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# On a real slurmctld with two emulated nodes: a job that is killed on one node goes on on the other, a job that may not be
-# requeued goes on as a new one, and the job behind waits for it.
+# On a real slurmctld with two emulated nodes: a job that is killed on one node continues on the other node. A job that
+# may not be requeued continues as a new job, and the dependent job waits for the new job.
 set -euo pipefail
 source "$SWINGBANK_SOURCE/tests/slurm/cluster.bash"
 work=$(mktemp -d /tmp/swingbank-retry.XXXXXX)
@@ -20,7 +20,8 @@ mkdir -p "$work/out/log" "$work/source/slurm"
 cp "$SWINGBANK_SOURCE/slurm/site.conf" "$work/site.conf"
 cp "$SWINGBANK_SOURCE/slurm/job.bash" "$work/source/slurm"
 mkdir "$work/source/jobs" && cp "$SWINGBANK_SOURCE/jobs/run_saving.bash" "$work/source/jobs"
-# Stages that stand for the real ones: killed on the node they meet first; saved at their time limit once.
+# Substitutes for the real stages: generate is killed on the first node that it gets; each fold once ends with exit code
+# 2 (saved at the time limit).
 head='#!/bin/bash
 source "$SWINGBANK_SOURCE/slurm/job.bash"
 job_start

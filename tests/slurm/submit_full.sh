@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# slurm/submit.sh with a stub in place of Slurm: what it asks for, what it refuses, and that nothing half-submitted stays.
-# shellcheck disable=SC2154 # what lib.bash sets
+# slurm/submit.sh with a stub in place of Slurm: the requested resources, refused inputs, and no jobs left in the queue
+# by a submission that fails half way.
+# shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/tiny_experiment.bash"
 export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin}
@@ -10,7 +11,7 @@ export PATH=$work/bin:$PATH STUB=$work/stub
 mkdir "$STUB"
 cat >"$work/bin/sbatch" <<'SBATCH'
 #!/usr/bin/env bash
-# A job's id for each call; refuses the call that $STUB/refuse names.
+# Prints a job id; fails in the call whose number is in $STUB/refuse.
 count=$(($(cat "$STUB/count" 2>/dev/null || echo 0) + 1))
 echo $count >"$STUB/count"
 printf '%s\n' "$*" >>"$STUB/sbatch"
@@ -62,7 +63,7 @@ submit --cancel >"$work/said"
 [[ $(cat "$STUB/scancel") == "103_1 104" ]] || fail "cancelled: $(cat "$STUB/scancel")"
 rm "$STUB/queue" "$STUB/scancel"
 
-echo 7 >"$STUB/refuse" # the third of a second submission
+echo 7 >"$STUB/refuse" # call 7: the third job of the second submission
 refuses "a job that Slurm refuses" "refused at stage fold .*2 jobs before it were cancelled" submit
 [[ $(cat "$STUB/scancel") == "105 106" ]] || fail "left in the queue: $(cat "$STUB/scancel")"
 
