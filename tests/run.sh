@@ -109,9 +109,9 @@ each_alone() {
   return 1
 }
 
-# Most processors lack AVX-512. SIMD code must compile for them without a warning, whatever machine runs the check:
-# the tests of the SIMD types, the effects and the batched kernel, without the libraries that these only link. On a
-# machine without AVX-512 the build of the check itself is for AVX2.
+# Most processors lack AVX-512. SIMD code must compile for them without a warning, on whatever machine the check runs.
+# Builds the tests of the SIMD types, the effects and the batched kernel, but not the libraries that these only link.
+# A machine with AVX2 and without AVX-512 needs no extra build, because its main build is for AVX2.
 for_avx2() {
   if grep -qw avx2 /proc/cpuinfo && ! grep -qw avx512f /proc/cpuinfo; then return; fi
   local folder=$source_folder/build/ci-x86-64-v3
@@ -121,7 +121,7 @@ for_avx2() {
   ! grep -qw avx2 /proc/cpuinfo || "$folder/bin/test_sim_core" --gtest_brief=1
 }
 
-# Threaded code under the thread sanitizer: seven seconds; a timeout in case of a deadlock.
+# Threaded code under the thread sanitizer: takes seven seconds; the timeout ends a deadlock.
 threads() {
   local log=$source_folder/build/tsan.log
   cmake --preset tsan -S "$source_folder" >"$log" && cmake --build "$source_folder/build/tsan" --target test_threads >>"$log" 2>&1 &&
@@ -154,8 +154,9 @@ if ((sanitize)); then
   phase "fast tier under the sanitizers"
   run_sanitized
 fi
-# tier NAME. Scripts of the full tier run one of each folder at a time, those of the nightly tier alone. Those of the
-# fast tier wait for processes and disks: one test more than there are cores keeps the cores busy.
+# tier NAME: runs the tests of a tier. Of the full tier's scripts, one per folder runs at a time; the nightly tier's
+# scripts run alone. Tests of the fast tier often wait for processes and disks, so one test more than there are cores
+# runs at a time.
 tier() {
   local jobs
   jobs=$(nproc)

@@ -1,6 +1,7 @@
 // blind-optimum: the difference in chi2 between the fit of the true structure by the diagnosis and a fit that
 // starts at the truth. Input: cases of `swingbank blind-test` with no or one hidden effect. Output, one line
-// per case: case, hidden effect, chi2 gained by the start at the truth, chi2 per value.
+// per case: case, hidden effect, decrease of chi2 by the start at the truth, reduced chi2 of that fit and of
+// the diagnosis' fit.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -18,7 +19,7 @@ using namespace swingbank::research;
 using namespace swingbank::validate;
 namespace fs = std::filesystem;
 
-/// Maximum number of rounds of a fit from the truth.
+/// Maximum number of calls of the optimiser for a fit from the truth; each continues the call before.
 constexpr int kTruthRounds = 5;
 
 /// The true structure as fitted by the diagnosis.
@@ -39,8 +40,8 @@ std::optional<Ended> true_one(const plant::PlantModel& model, const diagnose::Di
   return std::nullopt;
 }
 
-/// Returns the best fit that starts at the truth, from two event states: that of `ended` and the prepared
-/// one.
+/// Returns the better of two fits that start at the true parameter values: one continues the event states of
+/// `ended`, the other starts with the initial event states.
 fit::Fit from_truth(const Ended& ended, const noise::WhitenedEvents& events, const calibrate::Truth& truth) {
   std::vector<double> values = fit::values_of(ended.fit->plant, ended.free);
   for (std::size_t i = 0; i < ended.free.size(); ++i)

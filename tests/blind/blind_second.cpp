@@ -19,7 +19,7 @@ using namespace swingbank::validate;
 namespace second = blind_second;
 namespace fs = std::filesystem;
 
-constexpr double kMva = 200.0;  ///< of every machine here
+constexpr double kMva = 200.0;  ///< base of every machine here [MVA]
 
 struct Unstable {};
 
@@ -53,7 +53,7 @@ blind::cases::BlindEvent frequency_dip(second::Setup& s, blind::cases::BlindDraw
   return {fmt::format("frequency falls by {:.4f} pu from {:.5f} s", -s.dip.depth, s.dip.start), {}, {}};
 }
 
-/// Hides a kind in the setup. `size`: between 0 and 1 of the usual range.
+/// Hides a kind in the setup. `size`: 0 to 1, relative to the kind's usual maximum.
 void hide(const std::string& kind, double size, second::Setup& s, blind::cases::BlindDraw& d) {
   if (kind == "SEXS") {
     s.exciter = second::Sexs{.ratio = 0.1, .TB = 10, .K = 200 * size, .TE = 0.05, .low = -4, .high = 5.5};

@@ -16,9 +16,10 @@ namespace {
 namespace second = blind_second;
 using validate::record::Record;
 
-constexpr double kOn = 1.5137, kOff = 1.6219;  ///< of the fault, between samples [s]
-/// Interpolating V between samples at 240/s costs up to 2e-5 pu (validate/playin/README.md: 1.2e-6 at 120/s
-/// without controller gain, 2.6e-5 at 60/s). A wrong coefficient costs a thousand times as much.
+constexpr double kOn = 1.5137, kOff = 1.6219;  ///< start and end of the fault, between samples [s]
+/// Interpolating V between samples at 240/s causes an error up to 2e-5 pu (validate/playin/README.md: 1.2e-6
+/// at 120/s without controller gain, 2.6e-5 at 60/s). A wrong coefficient causes an error a thousand times as
+/// large.
 constexpr double kTolerance = 2e-4;
 
 second::Setup base() {
@@ -98,14 +99,14 @@ TEST(SecondWriting, StaysAtRest_WithoutAnEvent) {
   s.grid.resize(1);
   s.dip = {};
   const second::Output out = second::simulate(s, 5.0);
-  // The rounding of the initial values, 1e-16, grows in no mode within five seconds.
+  // No mode amplifies the rounding of the initial values (1e-16) noticeably within five seconds.
   for (std::size_t k = 0; k < out.t.size(); ++k) ASSERT_NEAR(out.P[k], s.P, 1e-9) << out.t[k];
 }
 
 TEST(SecondWriting, StepSizeDoesNotMatter) {
   const auto coarse = second::simulate(base(), 4.0), fine = second::simulate(base(), 4.0, 60, 1.0 / 9600);
-  // Fourth order: a quarter of the step leaves 1/256 of the error. The difference is the error of the coarse
-  // run.
+  // Fourth order: with a quarter of the step, 1/256 of the error remains. The difference is therefore the
+  // error of the coarse run.
   for (std::size_t k = 0; k < fine.t.size(); ++k) ASSERT_NEAR(coarse.P[k], fine.P[k], 1e-7) << fine.t[k];
 }
 
@@ -193,7 +194,8 @@ TEST(SecondWriting, Sawtooth_HasTheStatedValues) {
   second::Setup s = base();
   s.unlisted = second::sawtooth(0.05, 0.5, 1.9, 8.0);
   const auto out = second::simulate(s, 8.0, 240.0);
-  // 1.9 s + 0.5 s is a quarter of the period of 2 s: -A + 2 A / 4; at 4.2 s fifteen hundredths: -A + 0.3 A.
+  // At 2.4 s, a quarter of the period of 2 s has passed since 1.9 s: -A + 2 A / 4. At 4.2 s, 0.15 of the
+  // second period has passed: -A + 0.3 A.
   EXPECT_NEAR(out.Pm[576] - out.Pm[0], -0.025, 1e-9);
   EXPECT_NEAR(out.Pm[1008] - out.Pm[0], -0.035, 1e-9);
   EXPECT_DOUBLE_EQ(out.Pm[240], out.Pm[0]);

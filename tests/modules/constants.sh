@@ -60,7 +60,7 @@ print("\n".join(failed))
 sys.exit(bool(failed))
 PYTHON
 
-# violations planted in a copy, which the check must refuse
+# violations in a copy of the sources, which the check must refuse
 plant() {
   rm -rf "$work/tree" && mkdir "$work/tree" && cp -r base sim mpi train validate research jobs "$work/tree"
   printf '%s\n' "$2" >"$work/tree/$1"

@@ -15,7 +15,7 @@ try_all() {
 import json, shlex, subprocess, sys
 commands, source, attempt, wanted = sys.argv[1:]
 entry_of = {}
-for entry in json.load(open(commands)):  # by itself, or as one of several (CMAKE_UNITY_BUILD)
+for entry in json.load(open(commands)):  # a single source, or several in one unit (CMAKE_UNITY_BUILD)
     entry_of.setdefault(entry["file"], entry)
     if "/Unity/" in entry["file"]:
         for line in open(entry["file"]):

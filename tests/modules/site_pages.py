@@ -15,7 +15,7 @@ LOADED = {tag: "src" for tag in ("audio", "embed", "iframe", "img", "script", "s
 
 
 class Page(html.parser.HTMLParser):
-    """Text and elements of the article (of everything, without one), and all links and anchors."""
+    """Text and elements of the article (of the whole page if it has no article), and all links and anchors."""
 
     def __init__(self, text, article):
         super().__init__()

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# research/nightly.sh at tiny size: two nights, a short night that is interrupted and continues in its sizes, a double
-# run, a failure.
+# research/nightly.sh at tiny size: two nights, a short night that is interrupted and resumed with the same sizes, two
+# runs at once, and a night that fails.
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/tiny_experiment.bash"
 export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin} SWINGBANK_NIGHTLY_PAUSE=0 OMP_NUM_THREADS=1
@@ -31,8 +31,8 @@ first=$(find "$out/2026-02-01" -name '*gru*gen30.json') second=$(find "$out/2026
 BLIND=1 night 2026-02-02 "$work/tiny.toml" >"$work/log" 2>&1 || fail "night with a blind case: $(tail "$work/log")"
 grep -q '^1 cases judged, 0 without a verdict' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
 
-# A night of a few seconds with two seeds is interrupted in training and continues in its original sizes. No time
-# remains for tests, blind cases and fuzz targets.
+# A night of a few seconds with two seeds is interrupted in training and continues with its original sizes (sizes.conf).
+# No time remains for tests, blind cases and fuzz targets.
 sed 's/preset\.quick/preset.nightly/' "$work/tiny.toml" >"$work/short.toml"
 short() {
   bash "$SWINGBANK_SOURCE/research/nightly.sh" --out "$work/short" --hours "$1" --seeds 2 --date 2026-02-05 "$work/short.toml" \

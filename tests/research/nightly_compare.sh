@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Changes beyond the noise are named, others are not, and too few nights give no statement.
+# Changes of a result beyond the noise between nights are reported, smaller changes are not, and fewer than three runs
+# give no verdict.
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/lib.bash"
 
 # night DATE MSE-30 MSE-31

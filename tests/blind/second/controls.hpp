@@ -52,7 +52,7 @@ struct Tgov1 {
   }
 };
 
-/// Speed input; filter without numerator (A5 = A6 = 0), without voltage cut-off.
+/// IEEEST with speed input, filter without numerator (A5 = A6 = 0), and no voltage cut-off.
 struct Ieeest {
   double A1 = 0.06, A2 = 0.0016, A3 = 0.03, A4 = 0.0004;
   double T1 = 0.1, T2 = 0.02, T3 = 0.1, T4 = 0.02, T5 = 5, T6 = 5, KS = 10, high = 0.1, low = -0.1;

@@ -21,7 +21,7 @@ struct Rotor {
   double delta = 0, w = 0, Eq1 = 0, Ed1 = 0, psi1 = 0, psi2 = 0;
 };
 
-/// Se at a flux: B (psi - A)^2/psi through 1.0 and 1.2 pu.
+/// Saturation Se(psi) = B (psi - A)^2/psi, with A and B from S10 at 1.0 pu and S12 at 1.2 pu.
 inline double saturation(const MachineData& m, double psi) {
   if (!(m.S10 > 0)) return 0.0;
   const double ratio = std::sqrt(m.S10 / (1.2 * m.S12));
@@ -48,7 +48,7 @@ inline Phasor internal_voltage(const MachineData& m, const Rotor& x) {
 struct Torques {
   double Te, Ifd;
 };
-/// Derivatives of the rotor's variables [1/s] for a current out of the machine.
+/// Derivatives of the rotor's variables [1/s]; `current`: out of the machine.
 inline Rotor rates(const MachineData& m, const Rotor& x, Phasor current, double Efd, double Pm, double hz,
                    Torques& out) {
   const Phasor i = to_dq(current, x.delta);

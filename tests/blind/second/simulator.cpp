@@ -51,7 +51,7 @@ class Simulation {
     std::ranges::sort(all);
     return all;
   }
-  /// Derivatives at t; `within` selects the segment that contains it.
+  /// Derivatives at t, with the inputs of the segment that contains the time `within`.
   Vector rates(double t, double within, const Vector& v) {
     const State x = unpack(v);
     solve(t, within, x);
@@ -121,7 +121,7 @@ Vector moved(const Vector& x, double h, const Vector& k) {
   return y;
 }
 
-/// One classical Runge-Kutta step from t to t + h; no step of an input lies inside.
+/// One classical Runge-Kutta step from t to t + h; no input has a step inside this interval.
 void advance(Simulation& s, double t, double h, Vector& x) {
   const double middle = t + h / 2;
   const Vector k1 = s.rates(t, middle, x), k2 = s.rates(middle, middle, moved(x, h / 2, k1));

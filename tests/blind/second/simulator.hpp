@@ -21,8 +21,8 @@ struct FrequencyDip {
   double start = 1e9, depth = 0, tau = 3;
 };
 
-/// An unlisted disturbance. `memory`: two states, 0 before the event. `within`: a time in the same segment as
-/// the integration step, on the same side of every step of an input.
+/// An unlisted disturbance. `Memory`: its two states, 0 before the event. `within`: a time inside the current
+/// integration step, which shows on which side of an input's step t lies.
 struct UnlistedDisturbance {
   using Memory = std::array<double, 2>;
   /// Addition to the mechanical power [pu].

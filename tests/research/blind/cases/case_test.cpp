@@ -33,7 +33,8 @@ std::string all_csv(const BlindCase& made) {
   return text;
 }
 
-/// Expects every free parameter of the model to be off by the configured factor.
+/// Expects every free parameter of the model to deviate from the truth by a relative error in the configured
+/// range.
 void expect_misled(const BlindCase& made, const BlindConfig& config) {
   for (std::size_t k = 0; k < made.truth.machine.p.size(); ++k) {
     const double right = made.truth.machine.p[k];
@@ -117,7 +118,7 @@ TEST(BlindConditions, RateAndPreEventLengthAreAsStated) {
 }
 TEST(BlindConditions, AmbientLoadMovesTheVoltage) {
   BlindConfig config = tiny();
-  config.noise = {1e-9};  // a tenth of it on V
+  config.noise = {1e-9};  // the noise of V is a tenth of this
   const BlindCase quiet = make(config, "");
   config.conditions.ambient_share = 1.0;
   config.conditions.ambient = {0.005, 0.005};
@@ -136,9 +137,11 @@ TEST(BlindConditions, FrequencyDipHasNoSwitching) {
   EXPECT_TRUE(made.events.back().switchings.empty());
   const validate::record::Record& dip = made.records.back();
   EXPECT_GE(dip.t.back(), 26.5 - dip.step());  // 1.5 s, a dip of 20 s at least, 5 s
-  // At most 5 % of the load in 10 s: the change per sample is far below a fault's 0.05 pu.
+  // The dip is caused by at most 5 % of the load in 10 s: V changes per sample far less than by a fault's
+  // 0.05 pu.
   EXPECT_LT(largest_move(dip, dip.t.back()), 0.005);
-  // At least 2 % of the load, at droops of some 0.05 pu, lowers the speed by some 0.001 pu; it then recovers.
+  // At least 2 % of the load, with droops of about 0.05 pu, lowers the speed by about 0.001 pu. The speed
+  // then recovers.
   const double lowest = *std::ranges::min_element(dip.speed);
   EXPECT_LT(lowest, -3e-4);
   EXPECT_LT(std::abs(dip.speed.back()), -0.5 * lowest);
@@ -185,7 +188,7 @@ TEST(BlindConditions, RefusesShareWithoutItsValues) {
   }
   fs::remove(file);
 }
-/// Value of this name in a converter plant.
+/// Returns the value of a parameter in a converter plant.
 double value(const sim::plant::Plant& plant, const std::string& effect, const char* parameter) {
   for (const sim::plant::Block& b : plant.controls)
     if (b.effect->name == effect) return b.p[static_cast<std::size_t>(b.effect->parameter_index(parameter))];
@@ -210,7 +213,8 @@ TEST(BlindConverter, HidesASwitchOrAValueOfTheControls) {
   EXPECT_NEAR(value(wrong.truth, "REPCA1", "Ki"), std::pow(10.0, wrong.hidden[0].scale), 1e-12);
   EXPECT_THAT(wrong.hidden[0].kind->accepted_names, testing::ElementsAre("REPCA1.Ki"));
 }
-/// A plant that injects a current has no voltage of its own next to a bolted fault.
+/// Next to a bolted fault, the voltage of a plant that only injects a current would be zero and have no
+/// angle.
 TEST(BlindConverter, FaultVoltageKeepsAnAngle) {
   const BlindConfig config = load_blind_config(validate::test::source("configs/blind/converter.toml"));
   const BlindCase made = make_blind_case(config, {.seed = 404663549, .index = 12});
@@ -220,7 +224,7 @@ TEST(BlindConverter, FaultVoltageKeepsAnAngle) {
 TEST(BlindConditions, ZeroShareUsesNoRandomNumbers) {
   const BlindConfig config = tiny();
   BlindConfig unused = config;
-  unused.conditions.ambient = {0.1, 0.1};  // its share is 0
+  unused.conditions.ambient = {0.1, 0.1};  // the share of cases with ambient load is 0
   EXPECT_EQ(all_csv(make(config, "sawtooth")), all_csv(make(unused, "sawtooth")));
 }
 
@@ -284,7 +288,7 @@ sim::reference::ReferenceRun step_of_power(double rate, int samples) {
   return run;
 }
 
-/// Such a step at 960/s as the instruments record it: two seconds, on 100 MVA.
+/// The step of step_of_power() at 960/s, as the instruments record it: two seconds, on 100 MVA.
 validate::record::Record step_as_measured(const Conditions& conditions) {
   BlindEvent event;
   event.seconds = 2.0;
@@ -296,8 +300,8 @@ validate::record::Record step_as_measured(const Conditions& conditions) {
 TEST(BlindRecord, FilterIsTwoCyclesLongAndKeepsConstants) {
   const validate::record::Record plain = step_as_measured({.rate = 960.0});
   const validate::record::Record filtered = step_as_measured({.rate = 960.0, .filter = Filter::class_p});
-  // The window covers 15 samples to either side at 16 samples a cycle; elsewhere only the weighted sum
-  // rounds.
+  // At 16 samples a cycle, the window covers 15 samples on each side of the step. Elsewhere, the records
+  // differ by the rounding of the weighted sum only.
   for (int k = 0; k <= 1920; ++k) {
     const bool away = k < 1000 - 15 || k >= 1000 + 15;
     if (away) {
@@ -310,10 +314,11 @@ TEST(BlindRecord, FilterIsTwoCyclesLongAndKeepsConstants) {
 
 TEST(BlindRecord, ClassMFilterHasTheLengthOfTheStandard) {
   const validate::record::Record filtered = step_as_measured({.rate = 60.0, .filter = Filter::class_m});
-  // Order 164 at 16 samples a cycle: 85.4 ms to either side of the step at 1.0417 s, in samples of 1/60 s.
+  // Order 164 at 16 samples a cycle: the filter reaches 85.4 ms to each side of the step at 1.0417 s. Samples
+  // are 1/60 s apart.
   const auto moved = [&](std::size_t k) { return std::abs(filtered.P[k] - 0.5); };
   EXPECT_LT(moved(57), 1e-12);  // 92 ms before: rounding of a weighted sum
-  EXPECT_GT(moved(58), 1e-9);   // 75 ms before: a thousand times that
+  EXPECT_GT(moved(58), 1e-9);   // 75 ms before: a thousand times the rounding
   EXPECT_NEAR(filtered.P[68], 0.7, 1e-12);
 }
 

@@ -69,7 +69,8 @@ TEST_F(BlindScoring, CountsEachRate) {
   add({sexs}, {"missing", {"sexs"}, {}, "excitation", 1});
   add({sexs}, {"missing", {"TGOV1"}, {}, "mechanical", 2});
   add({sexs}, {"confusable", {"EXST1"}, {"EXST1", "SEXS"}, "excitation", 3});
-  add({{"SEXS", "excitation", "SEXS", 1.5}}, {"adequate", {}, {}, "none", 1});  // below 2 limits: excluded
+  add({{"SEXS", "excitation", "SEXS", 1.5}},
+      {"adequate", {}, {}, "none", 1});  // below 2 detection limits: excluded
   add({}, {"adequate", {}, {}, "none", 1});
   add({}, {"missing", {"SEXS"}, {}, "excitation", 1});
   add({{"saw", "mechanical", "saw", 5, false}}, {"unexplained", {}, {}, "mechanical", 1});
@@ -86,8 +87,8 @@ TEST_F(BlindScoring, CountsEachRate) {
   EXPECT_EQ(rate("false positive"), std::pair(1, 2));
   EXPECT_EQ(rate("outside the list: none of these"), std::pair(1, 1));
   EXPECT_EQ(rate("two effects: both named"), std::pair(1, 1));
-  EXPECT_EQ(s.by_size.at("P, Q only")[1].n, 1);  // 1-2 limits
-  EXPECT_EQ(s.by_size.at("P, Q only")[3].n, 3);  // 4-7 limits
+  EXPECT_EQ(s.by_size.at("P, Q only")[1].n, 1);  // 1-2 detection limits
+  EXPECT_EQ(s.by_size.at("P, Q only")[3].n, 3);  // 4-7 detection limits
   EXPECT_EQ(s.confusion.at("SEXS").at("TGOV1"), 1);
   EXPECT_EQ(s.confusion.at("nothing").at("adequate"), 1);
   EXPECT_DOUBLE_EQ(s.longest_seconds, 9.0);
@@ -98,7 +99,7 @@ TEST_F(BlindScoring, CountsRightVerdictsByCondition) {
   add({sexs}, {"missing", {"SEXS"}, {}, "excitation", 1}, false, {"30/s", "class M"});
   add({sexs}, {"missing", {"TGOV1"}, {}, "mechanical", 1}, false, {"30/s"});
   add({{"SEXS", "excitation", "SEXS", 1.5}}, {"adequate", {}, {}, "none", 1}, false,
-      {"30/s"});  // below 2 limits
+      {"30/s"});  // below 2 detection limits
   add({}, {"adequate", {}, {}, "none", 1}, false, {"30/s"});
   add({unlisted}, {"adequate", {}, {}, "none", 1}, false, {"class M"});
   add({sexs, unlisted}, {"unexplained", {}, {}, "none", 1}, false, {"class M"});  // counts as unlisted
