@@ -62,8 +62,8 @@ std::string next_command(const Arguments& a, bool adequate) {
                      a.of.inputs());
 }
 
-/// Writes an adequate model and its .dyr records to `kModel`, and an inadequate model to `kBiasedModel` with
-/// a warning at the file's head. Returns the lines for the terminal.
+/// Writes an adequate model to `kModel`, with its .dyr records beside it, or an inadequate model to
+/// `kBiasedModel`, with a warning at the file's head. Returns the lines for the terminal.
 std::string write_model(const Arguments& a, plant::PlantModel before, plant::PlantModel model, bool adequate,
                         const std::vector<std::string>& provenance) {
   before = event::whole_model(std::move(before));

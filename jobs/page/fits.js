@@ -95,7 +95,7 @@ export function result(message, event, add) {
     );
   }
 }
-/** Returns a text on the change of the error, other changes and the next action. */
+/** Returns a text about a finished fit: change of the error, changed parameters, held-out events, next action. */
 export function summary(m, before, events) {
   const said = [
     m.ratio < before

@@ -22,7 +22,7 @@ const state = {
   running: null,
   starting: null, // request that starts the fit
   number: 0,
-  trying: null, // comparison of a value that was changed
+  trying: null, // running comparison after a value was changed
   diagnosed: null, // step of the diagnosis whose candidates are shown
 };
 

@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   fmt::print("reduced: {:.3f} s\n", seconds() - start);
   round(reduction);
   fmt::print("after {:.2f} s\n", seconds() - begin);
-  // linearised again about the field's leading hypothesis, with the torque of the model
+  // Linearises again at the leading hypothesis for the field voltage, with the torque of the model.
   for (int again = 0; again < 2; ++again) {
     const auto lead = std::ranges::find(rows, event::InputKind::field, &Row::input);
     sim::plant::Plant leader = lead->trial.plant;

@@ -1,7 +1,8 @@
-// bench_play MODEL DRAWS RECORD...: cost of the play-in of a record, for every effect that can be added to
-// the plant, at its defaults and at draws about them. Columns: steps per sample, processor time, and the
-// largest and the mean square error against steps of 1e-9, in standard deviations of the noise. Then the cost
-// of one objective of a fit to all records, without and with its gradient.
+// bench_play MODEL DRAWS RECORD...: cost of playing records, for every effect that can be added to the plant.
+// Prints first the cost of one evaluation of a fit's objective over all records, without and with its
+// gradient. Prints then the cost of the play-in of the first record, at the effect's defaults and at DRAWS
+// random values around them. Columns: steps per sample and processor time, without and with sensitivities;
+// largest and mean square error against a run with tolerance 1e-9, in standard deviations of the noise.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -85,7 +86,7 @@ void print_costs(const Bench& bench) {
              all.sensitivity_seconds);
 }
 
-/// Processor time of the whitened residuals of all events [s], minimum of several calls.
+/// Processor time to compute the whitened residuals of all events [s], minimum of several calls.
 double objective_seconds(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                          bool gradient) {
   constexpr int kCalls = 10;

@@ -13,21 +13,21 @@ others() {
   awk '$1 != 32 { print; if ($1 != 39) { print $1 " '\''SEXS'\'' 1 0.1 10 100 0.1 -4 5 /"; print $1 " '\''TGOV1'\'' 1 0.05 0.5 1.1 0 2 6 0 /" } }' \
     "$networks/ieee39_dataset_genrou.dyr"
 }
-# steam T'do H X'd KR KS1
+# steam T'do H X'd KR KS1: .dyr records of the steam unit
 steam() {
   echo "32 'GENROU' 1 $1 0.07 0.8 0.11 $2 0.3 1.75 1.65 $3 0.58 0.27 0.16 0.08 0.35 /"
   echo "32 'ESST4B' 1 0.01 $4 $4 1 -0.87 0.01 1 0 1 -0.87 0 6.5 0 8.1 0.08 0.09 0 /"
   echo "32 'PSS2B' 1 1 0 3 0 5 1 2 2 0 2 0 2 0.28 1 0.5 0.1 $5 0.15 0.025 0.15 0.025 0.02 0.03 2 -2 2 -2 0.1 -0.1 /"
   echo "32 'IEEEG1' 1 0 0 20 0 0 0.15 0.3 -0.5 1 0 0.3 0.3 0 8 0.4 0 0.5 0.3 0 0 0 0 /"
 }
-# gas T'do H TE KS1 R
+# gas T'do H TE KS1 R: .dyr records of the gas unit
 gas() {
   echo "32 'GENROU' 1 $1 0.07 0.8 0.11 $2 0 1.75 1.65 0.36 0.58 0.27 0.16 0.08 0.35 /"
   echo "32 'REXSYS' 1 0.02 400 0 0.1 0.01 0 0 0 0 47 -20 0.05 1 0 0 1 1 0 0 47 -20 0 1 $3 0.05 2 3 0.0001 4 0.001 0 /"
   echo "32 'PSS2A' 1 1 0 3 0 5 1 2 2 0 2 0 2 0.28 1 0.5 0.1 $4 0.25 0.03 0.15 0.03 0.1 -0.1 /"
   echo "32 'GGOV1' 1 1 0 $5 1 0.05 -0.05 10 2 0 1 1 0.15 0.5 1.5 0.2 0.1 0 0 3 2 0.67 1 0 0.1 -0.1 0 0.1 10 0.1 0 0 4 5 99 -99 /"
 }
-# plant NAME UNIT VALUES...: $work/NAME.dyr and .toml
+# plant NAME UNIT VALUES...: writes $work/NAME.dyr and .toml of UNIT (steam or gas) with these values
 plant() {
   { others; "$2" "${@:3}"; } >"$work/$1.dyr"
   "$swingbank" plant --raw "$raw" --dyr "$work/$1.dyr" --bus 32 --measured-at 10 --out "$work/$1.toml" >/dev/null 2>&1 || fail "$1: no plant"

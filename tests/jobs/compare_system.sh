@@ -29,7 +29,7 @@ simulate() {
 simulate "$work/same" --attach all:TGOV1:R=0.05,T1=0.5
 simulate "$work/changed" --attach 2:TGOV1:R=0.02,T1=0.2 --attach 1:TGOV1:R=0.05,T1=0.5 --attach 3:TGOV1:R=0.05,T1=0.5 \
   --attach 6:TGOV1:R=0.05,T1=0.5 --attach 8:TGOV1:R=0.05,T1=0.5
-# system RUN [EVENT LINE]
+# system RUN [EVENT LINE]: prints a system file for the records of RUN
 system() {
   cat <<TOML
 [system]

@@ -3,7 +3,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 cases_of_others
 
-# there_and_back NAME RAW DYR BUS [OPTION...]
+# there_and_back NAME RAW DYR BUS [OPTION...]: extracts a unit, exports it, and extracts it again from the export
 there_and_back() {
   local name=$1 raw=$cases/$2 dyr=$cases/$3 bus=$4
   shift 4

@@ -22,7 +22,8 @@ as_records() {
   done
 }
 tried=0 missed=()
-# missing CASE RAW DYR BUS ID TAKEN EXPECTED FAULT...
+# missing CASE RAW DYR BUS ID TAKEN EXPECTED FAULT...: diagnoses the unit without control TAKEN; the set must have
+# EXPECTED
 missing() {
   local name="$1 bus $4 $5 without $6" expected=$7 code=0 columns
   raw=$cases/$1/$2 dyr=$cases/$1/$3 bus=$4 plant=$4

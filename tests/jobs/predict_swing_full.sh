@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The network of the swing equation: learns from a tiny dataset, beats the mean by far, and estimates the same from
-# records (swingbank predict) as on the rows on which it was judged. X'd comes from the plant file.
+# The network of the swing equation learns from a tiny dataset and is far better than predicting the mean. From records
+# (swingbank predict) it gives the same estimates as from the same rows in its test. X'd comes from the plant file.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 export OMP_NUM_THREADS=1

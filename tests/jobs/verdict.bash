@@ -3,7 +3,8 @@
 bent=$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml
 one=$SWINGBANK_SOURCE/configs/records/record-example/avr_ev1.csv
 export OMP_NUM_THREADS=2
-# the same plant with its exciter; the values are accurate enough for a grid code but not for the noise
+# sexs K: the same plant with its exciter, of gain K. The errors of its values are within a grid code's limits, but
+# exceed the noise.
 sexs() { cat "$bent"; printf '[exciter]\neffect = "SEXS"\nTAoverTB = 0.1\nTB = 10\nK = %s\nTE = 0.05\nEMIN = -4\nEMAX = 5\n' "$1"; }
 sexs 100 >"$work/right.toml"
 

@@ -115,8 +115,8 @@ TEST(DatabankDraw, ReportsProgress_WhenTheCountIsUnreachable) {
   }
 }
 
-// 19 of 20 admissible candidates are too close, so the forecast of the count applies after the first
-// candidates.
+// 19 of 20 admissible candidates are too close, so the forecast of the count applies after the first batch
+// of candidates.
 TEST(DatabankDraw, DoesNotAbort_WhenTheCountIsReachable) {
   DatasetConfig c = test::genrou_box();
   c.databank.distance = 2.0;

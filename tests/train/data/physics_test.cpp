@@ -13,7 +13,7 @@ namespace {
 
 const std::vector<std::string> kNames = {"speed", "P", "Q", "V", "Ifd", "frequency"};
 
-/// Steady until 1 s, then simple functions of the time after it.
+/// A record that is steady until 1 s, and then consists of simple functions of the time since then.
 std::vector<float> record(double rate, std::size_t samples) {
   std::vector<float> r(kNames.size() * samples);
   for (std::size_t k = 0; k < samples; ++k) {

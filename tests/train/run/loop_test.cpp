@@ -64,7 +64,7 @@ json result_of(const RunRequest& r) {
   return json::parse(in);
 }
 
-/// Rows of a world without generator 33, as input of train_network.
+/// Rows of a World's dataset without those of generator 33, as input of train_network.
 struct Prepared {
   explicit Prepared(const World& world)
       : split(data::leave_one_out(world.stream.labels(), {33, 0.1, 1})),
