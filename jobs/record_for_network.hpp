@@ -58,7 +58,8 @@ inline double between(const validate::record::Record& r, const std::vector<doubl
 /// Returns the record shifted to the event time of the network's dataset and resampled at the dataset's rate.
 /// The records of a dataset begin in steady state. Therefore the first sample, and all samples before the
 /// record's start, are set to the median before the event. Throws InputError if no event is found, fewer than
-/// five samples precede it, a channel is missing, or the record ends too early.
+/// five samples precede it, the network lacks the time of its faults, a channel is missing, or the record
+/// ends too early.
 inline NetworkInput network_input(const validate::record::Record& record,
                                   const validate::plant::PlantModel& model,
                                   const train::run::NetworkInfo& network, std::optional<double> event_s) {
