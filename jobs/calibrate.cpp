@@ -153,7 +153,7 @@ int run_baseline(Arguments& a, const plant::PlantModel& model, const check::Reco
 }
 
 /// Returns the network's estimate from the fitted events, by `swingbank predict` or from the file of --start.
-/// Returns nothing without a network.
+/// Returns nothing if neither --network nor --start is given.
 std::optional<calibrate::NetworkEstimate> ask_network(const Arguments& a,
                                                       const std::vector<record::Record>& records) {
   const auto out = calibrate::held_out_events(records, a.options.held_out);

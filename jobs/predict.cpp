@@ -53,7 +53,7 @@ std::vector<Estimated> read_all(const std::vector<std::string>& files, const pla
   return all;
 }
 
-/// Returns mean and standard deviation over the records; the latter is 0 for one record.
+/// Returns mean and standard deviation over the records; for one record the standard deviation is 0.
 std::pair<double, double> over_records(const std::vector<Estimated>& all, std::size_t parameter) {
   double mean = 0.0, square = 0.0;
   for (const auto& e : all) mean += e.estimate.values[parameter] / static_cast<double>(all.size());

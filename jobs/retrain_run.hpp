@@ -25,8 +25,8 @@ inline RetrainPrograms retrain_programs() {
   return {own_command("generate", remedy), own_command("train", remedy), own_command("predict", remedy)};
 }
 
-/// Generates the dataset of one side (with or without the effect) and trains its network. Returns false if a
-/// signal stopped it. Throws InputError if a step fails.
+/// Generates the dataset of one side (with or without the effect) and trains the side's network. Returns
+/// false if a signal stopped one of these steps. Throws InputError if a step fails.
 inline bool make_network(const RetrainPrograms& programs, const validate::retrain::RetrainSide& side) {
   const auto step = [&](const std::filesystem::path& program, const std::vector<std::string>& words) {
     const int code = run_own(program, words);

@@ -71,7 +71,7 @@ mount -o remount,ro "$work/small"
 refuses "read-only disk" "$work/small" make_data "$config" "$work/small/more"
 refuses "file in place of a folder" "$config" make_data "$config" "$config/data"
 
-# Killed by SIGKILL: everything in the journal is complete; the next run makes the rest.
+# After SIGKILL, all shards in the journal are complete, and the next run generates the other shards.
 "$swingbank" generate "$config" --draws 100000 --out "$work/killed" >/dev/null 2>&1 &
 killed=$!
 for ((i = 0; i < 300; i++)); do

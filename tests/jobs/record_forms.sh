@@ -121,7 +121,7 @@ for record, r in wrong:
 exit(bool(wrong))
 PY
 
-# refused NAME PATTERN: with one message
+# refused NAME PATTERN: the record is refused with one message
 refused() {
   refuses "$1" "$2" "$swingbank" compare --model "$work/plant.toml" --records "$work/refused/$1" --out "$work/refused-out"
   [[ ! -e $work/refused-out ]] || fail "$1 leaves a folder"

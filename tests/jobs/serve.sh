@@ -112,7 +112,7 @@ done
 grep -q 'ended without a result' stream || fail "the crash of a fit is not told: $(tail -c 300 stream)"
 expect 200 "$api/step?s=$session&k=0"
 
-# nothing is written but what is saved; the saved model is the step
+# nothing is written before saving; the saved model is that of the step
 [[ ! -e saved ]] || fail "something was written before saving: $(ls saved)"
 expect 200 "$api/save?s=$session" -d '{"step":1}'
 grep -q 'H = 4' saved/model.toml || fail "the saved model is not the step"

@@ -9,7 +9,7 @@ on_two() { timeout -k 5 60 mpirun --oversubscribe -np 1 "$@"; }
 expect 1 "failure at rank 2 of 3 (only here)" \
   timeout -k 5 60 mpirun --oversubscribe -np 3 "$SWINGBANK_BIN/test_mpi_ranks" --gtest_filter='FailingRank.*' --gtest_brief=1
 
-# Memory for the databank's copy on one rank only: 14 parameters of 20 million points are 2.2 GB.
+# Rank 1 has too little memory for its copy of the databank: 14 parameters of 20 million points are 2.2 GB.
 options=("$config" --draws 20000000 --faults-per-point 1 --draws-per-shard 1000000 --progress none)
 expect 1 "too little memory for the databank at rank 1" \
   on_two "$generate" "${options[@]}" --out "$work/memory" : -np 1 prlimit --as=1500000000 "$generate" "${options[@]}" --out "$work/memory"

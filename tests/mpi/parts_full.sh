@@ -46,7 +46,7 @@ expect 1 "it holds files but no dataset" "${make[@]}" --part 1/2 --out "$work/fo
   expect 0 "dataset $whole" "${make[@]}" --part 1/3 --out "$work/parts"
 )
 
-# A databank is accepted only for its own points.
+# A databank of another config, one with too few points, and a changed one are refused.
 expect 1 "a databank of another config at $work/bank.h5" "${make[@]}" --seed 2 --databank "$work/bank.h5" --out "$work/y"
 "$SWINGBANK_BIN/swingbank-databank" "$configs/ieee14_genrou_bus3.toml" --points 10 --out "$work/few.h5" >/dev/null
 expect 1 "too few databank samples at $work/few.h5 (it has 10" "${make[@]}" --databank "$work/few.h5" --out "$work/z"

@@ -61,7 +61,7 @@ TEST(Physics, ContainsTheVariablesOfTheMachineEquations) {
 
 TEST(Physics, CoarsensAfterTheEventAndEndsInsideTheWindow) {
   const Physics physics(kNames, {120, 0.5, 10.0, 1.0, 0.3});
-  // 0.5 to 2 s sample by sample, to 6 s in thirtieths, to 10 s in fifteenths
+  // 0.5 to 2 s sample by sample, to 6 s in bins of 1/30 s, to 10 s in bins of 1/15 s
   EXPECT_EQ(physics.bins(), 180u + 120u + 60u);
   EXPECT_EQ(physics.samples(), 1200u);
 }
@@ -103,7 +103,7 @@ TEST(Whitening, DecorrelatesAndNormalisesAndIsRestoredFromAFile) {
       for (std::size_t k = 0; k <= i; ++k) product[i * kept + k] += x(r, i) * x(r, k) / 2000;
     }
   for (std::size_t i = 0; i < kept; ++i) {
-    EXPECT_NEAR(mean[i], 0.0, 0.02) << i;  // components with 1e-9 of the variance, in single precision
+    EXPECT_NEAR(mean[i], 0.0, 0.02) << i;  // single precision, and components with 1e-9 of the variance
     for (std::size_t k = 0; k <= i; ++k)
       EXPECT_NEAR(product[i * kept + k], i == k ? 1.0 : 0.0, 0.05) << i << ", " << k;
   }

@@ -168,7 +168,7 @@ TEST(SavedNetwork, OneNetworkServesAllNoiseLevelsWithItsPosterior) {
   const json& believed = with["posterior"];
   EXPECT_EQ(believed["set_aside"].size(), 2u);
   EXPECT_EQ(believed["test"]["rows"], 30);
-  EXPECT_EQ(believed["test"]["per_parameter"].size(), 2u);  // the third is constant
+  EXPECT_EQ(believed["test"]["per_parameter"].size(), 2u);  // the third parameter is constant
   EXPECT_GT(believed["test"]["coverage_90"].get<double>(), 0.5);
   EXPECT_LT(believed["test"]["coverage_50"].get<double>(), believed["test"]["coverage_90"].get<double>());
 
