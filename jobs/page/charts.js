@@ -63,7 +63,7 @@ function chart(place, of, height) {
   return { plot, of, place, height };
 }
 
-/** Shows channels {name, unit, data: [t, measured, submitted model, current model], band, window, fault, allowed, main}. */
+/** Shows channels {name, unit, data: [t, measured, submitted, current model], band, window, fault, allowed, main}. */
 export function show(channels) {
   ++moving;
   for (const c of charts.splice(0)) {
