@@ -1,5 +1,5 @@
-// The SIMD kernel against IDA, and IDA against itself, on random events drawn over every registered effect
-// (random_grids.hpp).
+// The SIMD kernel against IDA, and IDA against itself, on random grids and events that use every registered
+// effect (random_grids.hpp).
 #include <cstdlib>
 #include <map>
 
@@ -15,8 +15,8 @@ using test::Difference;
 using test::Draws;
 
 constexpr double kLimit = 1e-4;  ///< relative to max(1 pu, the channel's swing): required limit
-/// In float an exciter amplifies the rounding of the voltage by its gain (REXS: 2,800): the limit for Efd is
-/// 1e-3.
+/// Weight of Efd differences in float: the limit for Efd is then 1e-3, because an exciter amplifies the
+/// rounding of the voltage by its gain (REXS: 2,800).
 constexpr double kEfdInFloat = 0.1;
 constexpr int kEventsPerGrid = 10;
 
@@ -69,8 +69,8 @@ bool is_near_critical(const grid::Grid& grid, network::Event event, BatchOptions
 }
 
 /// Returns whether the operating point is stable: a load step of 1e-4 pu for 0.2 s does not change any Efd by
-/// 0.3 pu within `seconds`. Drawn controls may be unstable (a stabiliser with input V: growth rate 30/s);
-/// rounding then determines when the run diverges.
+/// 0.3 pu within `seconds`. Randomly drawn controls may be unstable (a stabiliser with input V: growth rate
+/// 30/s), and rounding then determines when the run diverges.
 bool is_stable(const grid::Grid& grid, double seconds) {
   BatchOptions options;
   options.t_end = seconds;
@@ -104,7 +104,7 @@ bool runs_away(const Trajectory& run) {
   return false;
 }
 
-/// Events that are stable in the reference, with its runs.
+/// Events that are stable in the reference integrator, with the reference's runs.
 std::map<std::uint64_t, std::pair<Job, reference::ReferenceRun>> references(const grid::Grid& grid,
                                                                             Draws& draws, Tally& tally) {
   std::map<std::uint64_t, std::pair<Job, reference::ReferenceRun>> runs;
@@ -163,8 +163,9 @@ void pass_over(const grid::Grid& grid, Draws& draws) {
   for (int i = 0; i < kEventsPerGrid; ++i) test::draw_event(grid, draws);
 }
 
-/// Returns the next stable grid, tested over half an event in double and a whole event in float. A slower
-/// growth (a drawn PSS2C before an ST5B, 2/s) ends in a limit cycle, whose phase depends on rounding.
+/// Returns the next stable grid, tested over half an event in double and a whole event in float. An
+/// instability that grows slowly (PSS2C before ST5B: 2/s) ends in a limit cycle, whose phase depends on
+/// rounding.
 constexpr double kLookedAt = 3.0, kLookedAtInFloat = 6.0;  // [s]
 grid::Grid drawn(const grid::Grid& plain, Draws& draws, Tally& tally, double seconds = kLookedAt) {
   while (true) {
@@ -194,7 +195,7 @@ Tally run_events(int wanted, std::uint64_t seed) {
   return tally;
 }
 
-/// The same in float, over the machines with linear current.
+/// Compares events in float, on grids of machines whose current is linear in the voltage.
 Tally run_in_float(int wanted, std::uint64_t seed) {
   const grid::Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   std::set<std::string_view> sought;
@@ -232,8 +233,8 @@ const std::set<std::string_view> kLater = {
     "IEEEX1", "IEESGO",  "LCFB1",  "MAXEX1", "OEL1",   "PIDGOV", "PSS2C",  "REXS",   "SCRX",
     "ST2CUT", "ST5B",    "STAB2A", "SVSMO1", "TGOV3",  "UEL2",   "WSHYGP", "WSIEG1"};
 
-/// Three grids with events that were beyond the limit before decision 04 was amended on 2026-11-23, drawn
-/// from the effects of that day.
+/// Three grids with events that exceeded the limit before decision 04 was amended on 2026-11-23. They are
+/// drawn from the effects that existed that day.
 TEST(AllEffectsAgainstReferenceFull, EventsBeyondTheFormerLimit) {
   const grid::Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   const std::set<int> missed = {37, 45, 85};
@@ -251,8 +252,8 @@ TEST(AllEffectsAgainstReferenceFull, EventsBeyondTheFormerLimit) {
   for (const auto& [what, count] : tally.missed) ADD_FAILURE() << what;
 }
 
-/// REXS has a default gain of 2,800: for one drawn machine Efd differs by 2.3e-6 of its swing within six
-/// seconds, with an error weight of 50 instead of 10 by 4.1e-6. The reason is unknown.
+/// For one drawn machine with REXS (default gain 2,800), Efd differs by 2.3e-6 of its swing within six
+/// seconds. With an error weight of 50 instead of 10 it differs by 4.1e-6. The reason is unknown.
 const std::set<std::string_view> kBeyondOwnLimit = {"REXS"};
 
 /// The reference's own error: rtol 1e-8 against 1e-10.

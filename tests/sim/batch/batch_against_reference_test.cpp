@@ -50,7 +50,7 @@ struct Case {
   reference::ReferenceRun reference;
 };
 
-/// RandomDraws events of the dataset's kind until `count` of them are stable in the reference.
+/// Draws events of the dataset's kind until `count` of them are stable in the reference.
 std::vector<Case> stable_cases(const grid::Grid& grid, std::size_t count) {
   RandomDraws draws;
   std::vector<Case> cases;
@@ -109,7 +109,7 @@ TEST_P(BatchAgainstReferenceFull, HundredRandomStableEvents) {
 INSTANTIATE_TEST_SUITE_P(Grids, BatchAgainstReferenceFull,
                          ::testing::Values("ieee39_dataset_genrou", "ieee39_genrou"));
 
-/// A few events of each kind for the fast tier, other grids and other conventions included.
+/// A few events of each kind for the fast tier, including other grids and other conventions.
 TEST(BatchAgainstReference, EachKindOfEvent) {
   struct Kind {
     const char* grid;

@@ -19,8 +19,9 @@ using Values = std::map<std::string, double>;
 struct Outfit {
   std::string name;
   std::vector<std::pair<std::string, Values>> blocks;  ///< the source first
-  /// Reactance of the nearest fault that is not bolted [pu]. For smaller ones a given current has several
-  /// voltage solutions, or one that vanishes during the fault, and the integrators may follow different ones.
+  /// Reactance of the nearest fault that is not bolted [pu]. At smaller reactances a given current has
+  /// several voltage solutions, or a solution that vanishes during the fault, and the two integrators may
+  /// follow different solutions.
   double nearest = 0.001;
 };
 
@@ -82,8 +83,8 @@ TEST_P(Converters, LanesFollowTheReference) {
     EXPECT_LT(d.value, kConverterLimit) << "event " << e << ": " << d.where;
   }
 }
-/// Faults from bolted to 0.02 pu: the run continues for any voltage solution of the converter, also if the
-/// solution vanishes.
+/// Faults with reactances from 0 (bolted) to 0.02 pu: the run stays stable, whichever voltage solution the
+/// converter follows, and even if the solution vanishes.
 TEST_P(Converters, RideThroughEveryFault) {
   const grid::Grid grid = grid_with(GetParam());
   std::vector<network::Event> all;
@@ -165,8 +166,8 @@ INSTANTIATE_TEST_SUITE_P(
                {{"REGCB1", {{"Imax", 1.0}}}, {"REECB1", {{"Kqv", 10.0}, {"Imax", 1.0}}}},
                0.02},
         Outfit{"WithItsLoop", {{"REGCC1", {}}, {"REECB1", {{"Kqv", 2.0}}}}, 0.02},
-        // With Kip 10 in addition, the terminal's angle differs by 4.4e-4 rad after the bolted fault's first
-        // cycle, at 0.086 pu: 3.8e-5 pu of its voltage.
+        // With Kip = 10 in addition, the terminal's angle differs by 4.4e-4 rad after the first cycle of the
+        // bolted fault. At the terminal voltage of 0.086 pu this is 3.8e-5 pu.
         Outfit{
             "WithItsLoopFrozen",
             {{"REGCC1", {{"Vpllfrz", 0.3}, {"rateFlag", 1.0}, {"Tfltr", 0.02}}}, {"REECB1", {{"Kqv", 2.0}}}},

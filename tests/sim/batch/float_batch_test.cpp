@@ -1,6 +1,6 @@
-// Sixteen lanes in float (decision 02) against eight in double: switching, steps and outages; bits that do
-// not depend on the other lanes; refusals. all_effects_against_reference_test.cpp compares them with the
-// reference.
+// SIMD batches of sixteen float lanes (decision 02) against eight double lanes: switching, steps, outages and
+// refusals. The results do not depend on the other events of the batch, to the last bit.
+// all_effects_against_reference_test.cpp compares float results with the reference.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ std::map<std::uint64_t, Trajectory> run_batch(const grid::Grid& grid, const std:
   return run_jobs(grid, jobs, options);
 }
 
-/// Compares the events that both find stable; returns their number.
+/// Compares the events that are stable in both precisions; returns their number.
 int agree(const grid::Grid& grid, const std::vector<Job>& jobs) {
   const auto doubles = run_batch(grid, jobs, 8), floats = run_batch(grid, jobs, 16);
   int compared = 0;

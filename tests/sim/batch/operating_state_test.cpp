@@ -31,7 +31,7 @@ const grid::Grid& with_load_models() {
   return grid;
 }
 
-/// Other loads, dispatch, voltages and bases; some grids have one line less.
+/// Returns a grid with other loads, dispatch, voltages and bases; some grids have one line less.
 std::shared_ptr<const grid::Grid> another(const grid::Grid& grid, int number) {
   const double s = 0.7 + 0.1 * number;
   network::Network n = grid.network;
@@ -106,8 +106,8 @@ TEST(OperatingStates, MixedBatchEqualsSeparateBatchesWithLoadModels) {
   expect_its_own(with_load_models(), {}, 1e-12);
 }
 
-/// With many sources the lanes share the matrix of their grid, which differs between operating points:
-/// rounding differs.
+/// With many sources, the lanes of a batch share the matrix of a grid. The matrix differs between operating
+/// points, and therefore the rounding.
 TEST(OperatingStates, MixedBatchEqualsSeparateBatchesWithManySources) {
   static const grid::Grid grid = synthetic(41);
   const Mixed mixed(grid);

@@ -17,7 +17,7 @@ class Draws {
  public:
   explicit Draws(std::uint64_t seed, std::set<std::string_view> without = {})
       : without_(std::move(without)), random_(seed) {}
-  /// Whether an effect is included; without it the draws equal those made before it existed.
+  /// Whether an effect may be drawn. Without it, the draws equal those made before the effect existed.
   [[nodiscard]] bool knows(const Effect& e) const { return !without_.contains(e.name); }
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
@@ -37,8 +37,8 @@ inline std::vector<const Effect*> effects_in(Slot slot, const Draws& draws) {
   return list;
 }
 
-/// Values within 10 % of the defaults. A value of zero is sometimes drawn up to 0.2 % of its range, and a
-/// code sometimes changed, so that every branch of the equations occurs.
+/// Values within 10 % of the defaults. With a probability of 15 %, a default of zero becomes a value within
+/// 0.2 % of the range, and a code changes, so that every branch of the equations occurs.
 inline double draw_value(const Parameter& record, double standard, Draws& draws) {
   const bool moved = draws.chance(0.15);
   if (record.is_code()) return moved ? std::floor(draws.uniform(record.low, record.high + 1.0)) : standard;
@@ -51,7 +51,7 @@ inline plant::Block draw_block(Slot slot, Draws& draws) {
   const auto list = effects_in(slot, draws);
   if (list.empty()) return {};
   const Effect& e = *list[draws.index(list.size())];
-  constexpr int attempts = 3000;  // values are drawn independently; orderings among them are met by chance
+  constexpr int attempts = 3000;  // values are independent; required orderings occur by chance
   for (int attempt = 0; attempt < attempts; ++attempt) {
     plant::Block block{&e, e.default_parameters()};
     for (std::size_t i = 0; i < block.p.size(); ++i)
@@ -92,7 +92,7 @@ inline bool has_operating_point(const plant::Plant& plant, const grid::Grid& gri
   }
 }
 
-/// Every load effect at some of the loads, if the operating point is feasible.
+/// Gives some of the loads a random load effect, if the operating point is feasible.
 inline void dress_loads(grid::Grid& grid, Draws& draws) {
   for (std::size_t i = 0; i < grid.network.loads.size(); ++i) {
     if (!draws.chance(0.2)) continue;

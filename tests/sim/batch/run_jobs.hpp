@@ -18,7 +18,7 @@ inline std::map<std::uint64_t, Trajectory> run_jobs(const grid::Grid& grid, cons
   return all;
 }
 
-/// The same for events, in their order.
+/// Runs the events in one batch; the key of a result is the index of its event.
 inline std::map<std::uint64_t, Trajectory> run_events(const grid::Grid& grid,
                                                       const std::vector<network::Event>& events,
                                                       const BatchOptions& options) {

@@ -30,7 +30,7 @@ InternalMatrix matrix(const network::Topology& topology, int changed = 0) {
   return InternalNetwork(grid()).matrix(topology, r, x);
 }
 
-/// Largest entry of the matrix minus `from` and the products.
+/// Largest entry of the matrix `of` minus `from` minus the sum of the outer products.
 double rest(const InternalMatrix& of, const InternalMatrix& from, const LowRank& products) {
   double largest = 0.0;
   for (std::size_t i = 0; i < kMachines; ++i)
@@ -45,7 +45,7 @@ double rest(const InternalMatrix& of, const InternalMatrix& from, const LowRank&
   return largest;
 }
 
-/// Number of products of a difference; -1: more than kMost.
+/// Number of outer products that express `of` minus the base matrix; -1: more than kMost.
 int rank(const InternalMatrix& of) {
   const InternalMatrix from = matrix({});
   const auto found = difference(of, from, kMost);
@@ -128,7 +128,7 @@ TEST(BusFactors, RefuseMatricesThatNeedPivoting) {
   EXPECT_FALSE(BusFactors().factor(crossed));
 }
 
-/// Both forms: rows of the matrix, and factors of the whole network.
+/// Both forms of the shared network: rows of the reduced matrix, and factors of the whole network.
 class SharedNetworkForms : public testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Both, SharedNetworkForms, testing::Bool());
 
@@ -200,8 +200,8 @@ TEST(SwitchedNetwork, GivesRowsAndColumnsOfTheReducedMatrix) {
   }
 }
 
-/// Faults, opened lines, lost generators, load steps, and machines with another impedance: a few; so many
-/// that a fault exceeds the number of products; all.
+/// Jobs with faults, opened lines, lost generators, load steps and changed machine impedances. The changed
+/// machines are up to two, or kMost (a fault then exceeds the number of products), or all.
 std::vector<Job> jobs() {
   std::vector<Job> list(20);
   for (std::size_t k = 0; k < list.size(); ++k) {

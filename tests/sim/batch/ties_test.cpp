@@ -21,7 +21,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// The load of 103 is at 104, behind the added `branches` and `transformers`; a unit may be at 105.
+/// The load of bus 103 is at bus 104, behind the added `branches` and `transformers`. A unit may be at bus
+/// 105.
 formats::RawCase case_with(const std::string& branches, const std::string& transformers,
                            const std::string& buses = "") {
   formats::RawCase c;
@@ -115,8 +116,9 @@ struct Place {
 };
 class NearZeroImpedance : public ::testing::TestWithParam<Place> {};
 
-// Up to 1e-6 pu all impedances give the same case. Above it the run changes with the impedance: rotor angles
-// and field currents by up to 300 rad or pu per pu (two resistances in series, during the fault).
+// Up to 1e-6 pu all impedances give the same case. Above 1e-6 pu the results change with the impedance: rotor
+// angles by up to 300 rad per pu and field currents by up to 300 pu per pu (two resistances in series, during
+// the fault).
 TEST_P(NearZeroImpedance, BehavesLikeZero) {
   constexpr double kSame = 1e-5, kPerImpedance = 300.0;
   const auto [name, at] = GetParam();

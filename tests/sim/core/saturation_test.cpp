@@ -19,10 +19,10 @@ TEST(QuadraticSaturation, PassesThroughBothFactors) {
   }
 }
 
-// psi Se = B (psi - A)^2 through (1, S1.0) and (1.2, 1.2 S1.2): sqrt(1.2 S1.2/S1.0) = (1.2 - A)/(1 - A).
-// Where S1.2 < 1.2 S1.0 the vertex A lies below zero: the field then needs B A^2 at the smallest flux, and
-// more than the air-gap line gives at every flux. The other root, (1.2 + r)/(1 + r), lies between the two
-// points; its curve would fall from 1 to A and is no saturation.
+// psi Se = B (psi - A)^2 through (1, S1.0) and (1.2, 1.2 S1.2): sqrt(1.2 S1.2/S1.0) = (1.2 - A)/(1 - A). If
+// S1.2 < 1.2 S1.0, the vertex A lies below zero. The field current then exceeds the air-gap line at every
+// flux, by B A^2 at the smallest flux. The other root for A, (1.2 + r)/(1 + r), lies between the two points.
+// Its curve would fall from 1 to A and is not a saturation curve.
 TEST(QuadraticSaturation, FactorsThatHardlyDifferPutTheVertexBelowZero) {
   const double r = std::sqrt(1.2 * 1.02 / 1.01), A = (1.2 - r) / (1.0 - r),
                B = 1.01 / ((1.0 - A) * (1.0 - A));

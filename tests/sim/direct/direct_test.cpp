@@ -36,8 +36,8 @@ void expect_near(const std::vector<double>& found, const std::vector<double>& tr
         << plant.name << " " << plant.machine.effect->parameters[k].name;
 }
 
-// The limits are twice the largest errors of these twenty records. The closed form is weakest for T''qo, Xl
-// and the saturation, to which an integral is hardly sensitive.
+// The limits are twice the largest errors of these twenty records. The closed form is least accurate for
+// T''qo, Xl and the saturation, because its integrals are hardly sensitive to them.
 TEST(Direct, FindsEveryParameterOfEveryMachine) {
   const auto grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   for (const auto& [bus, cleared] : {std::pair{16, 2.063}, {4, 2.087}}) {

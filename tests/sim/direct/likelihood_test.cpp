@@ -27,7 +27,7 @@ Recording with_noise(Recording r, double level, std::uint64_t seed) {
   return r;
 }
 
-/// Mean of squared errors over their bounds, and of chi-square, over machines, events and draws of the noise.
+/// Means over machines, events and noise realisations: squared error divided by its bound, and chi-square.
 struct Judged {
   double ratio = 0, chi_square = 0;
 };

@@ -128,7 +128,7 @@ TEST(Conformance, SteadyStateHasZeroDerivatives) {
               << e->name << "." << e->states[i - 5].name;  // rounding, over T'' >= 0.005 s
         if (e->get<double>().machine.current) {
           EXPECT_NEAR(out[0], ir, 1e-12) << e->name << ": its current is not the operating point's";
-          EXPECT_NEAR(out[1], ii, 1e-12) << e->name;  // rounding over a reactance of 0.2 pu
+          EXPECT_NEAR(out[1], ii, 1e-12) << e->name;  // rounding divided by a reactance of 0.2 pu
           continue;
         }
         double r, x;

@@ -43,7 +43,7 @@ class ControlBench {
     refused = ops().control.steady(effect_->user_model.get(), p.data(), c.data(), s, x.data());
     within_limits();
   }
-  /// The same with a compiled effect.
+  /// Bench of the compiled effect with this name.
   explicit ControlBench(const std::string& name, const Changes& changes = {}, Signals<double> at = rated(),
                         Conventions conventions = Conventions::psse())
       : ControlBench(compiled(name), changes, at, conventions) {}
@@ -125,7 +125,7 @@ class ControlBench {
   Signals<double> in;  ///< inputs; may change between runs
   std::vector<double> p, c, x;
   Problems problems;    ///< reported by check() for the parameters
-  std::string refused;  ///< reason of steady() to refuse the operating point; empty: none
+  std::string refused;  ///< reason why steady() refuses the operating point; empty: accepted
 
  private:
   [[nodiscard]] const Ops<double>& ops() const { return effect_->get<double>(); }

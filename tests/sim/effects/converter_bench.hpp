@@ -29,7 +29,7 @@ struct BehindImpedance {
     ops.prepare(p.data(), Conventions::psse(), c.data());
     refused = ops.machine.steady(p.data(), c.data(), s, x.data());
   }
-  /// Current in phase with `axis` and lagging it by 90 degrees.
+  /// Components of the current: in phase with `axis`, and lagging it by 90 degrees.
   std::complex<double> current(std::complex<double> v, std::complex<double> axis) {
     s.Vr = v.real(), s.Vi = v.imag();
     ops.machine.current(c.data(), x.data(), m.data(), s);

@@ -98,7 +98,7 @@ TEST(ConverterDera1, StaysAtOperatingPointAndRidesThroughASag) {
 TEST(ConverterDera1, LowVoltageTripsAPartAndAFractionReconnects) {
   const DeraChanges sags = {{"Kqv", 0.0}, {"freqFlag", 0.0}, {"Imax", 2.0}};
   Distributed brief(sags);
-  brief.run(0.2, 0.465);  // below Vl1 for 0.14 s behind the voltage measurement
+  brief.run(0.2, 0.465);  // the measured voltage is below Vl1 for 0.14 s
   EXPECT_NEAR(brief.state("M"), 0.5, 5e-3);
   brief.run(0.5, 1.0);
   EXPECT_NEAR(brief.state("M"), 1.0, 1e-6);

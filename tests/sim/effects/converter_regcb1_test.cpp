@@ -27,7 +27,8 @@ TEST(ConverterRegcb1, StartsAtItsCommands) {
 
 TEST(ConverterRegcb1, VoltageDropDrivesCurrentThroughTheReactance) {
   Behind b({});
-  // 0.05 pu less at 1 pu of inner voltage: 0.05/0.25 pu more reactive current without delay
+  // terminal voltage 0.05 pu lower at an inner voltage of 1 pu: 0.05/0.25 pu more reactive current, without
+  // delay
   expect_near(b.current(0.95), {0.6, 0.2 + 0.2}, 1e-13);
   EXPECT_NEAR(b.derivatives(0.95)[3], (0.95 + 0.25 * 0.2 - b.x[3]) / 0.01, 1e-10);
   Behind resistive({{"Re", 0.25}, {"Xe", 1e-9}});
@@ -41,7 +42,7 @@ TEST(ConverterRegcb1, PriorityCurrentIsLimitedLast) {
   expect_near(q_leads.current(0.85), {0.6, 0.8}, 1e-13);  // 0.15/0.25 pu more: just Imax
   expect_near(q_leads.current(0.825), {std::sqrt(1 - 0.81), 0.9}, 1e-13);
   expect_near(p_leads.current(0.7), {0.6, 0.8}, 1e-13);
-  // At full priority current, 0.025 Imax remain for the other.
+  // When the reactive current, which has priority, is at Imax, 0.025 Imax remain for the active current.
   expect_near(q_leads.current(0.5), {0.025, 1.0}, 1e-13);
 }
 

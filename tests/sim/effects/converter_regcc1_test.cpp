@@ -62,7 +62,8 @@ TEST(ConverterRegcc1, PllIsLimitedAndFrozenAtLowVoltage) {
 
 TEST(ConverterRegcc1, VoltageChangeDrivesCurrentThroughTheReactance) {
   Locked b({});
-  // 0.05 pu less at constant inner voltage: 0.05/0.25 pu more reactive current without delay
+  // terminal voltage 0.05 pu lower at constant inner voltage: 0.05/0.25 pu more reactive current, without
+  // delay
   expect_near(b.current(0.95), {0.6, 0.2 + 0.2}, 1e-13);
   // Voltage 0.02 rad ahead of the loop: (E - V)/(j Xe) in the loop's frame.
   const std::complex<double> inner(1.0 + 0.25 * 0.2, 0.25 * 0.6), v = std::polar(1.0, 0.02);

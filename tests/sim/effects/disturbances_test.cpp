@@ -137,8 +137,8 @@ double worst(const Trajectory& run, Channel channel, const F& expected) {
 double lagged(double tau, double T) { return tau <= 0.0 ? 0.0 : -std::expm1(-tau / T); }
 double lagged_ramp(double tau, double T) { return tau <= 0.0 ? 0.0 : tau - T * lagged(tau, T); }
 
-// Tolerances per step: IDA 1e-8, the SIMD batch 1e-6; exponential decay forgets old errors. The infinite
-// bus's impedance of 1e-6 pu amplifies the rounding of its voltage, which limits the tolerance.
+// Tolerances per step: IDA 1e-8, the SIMD batch 1e-6. Earlier errors decay exponentially. The infinite bus's
+// impedance of 1e-6 pu amplifies the rounding of its voltage, which limits the tolerance.
 constexpr double kReferenceTolerance = 1e-6, kBatchTolerance = 1e-5;
 
 TEST(Disturbances, VrefStepIsLaggedByTheExciter) {
@@ -180,7 +180,8 @@ TEST(Disturbances, FastValvingActsAfterTheGovernor) {
     const double shut = std::clamp((t - 2.0) / 0.1, 0.0, 1.0) - std::clamp((t - 2.6) / 2.0, 0.0, 1.0);
     return -0.4 * before * shut;
   };
-  // No state in between; a sample at a kink is the torque 1e-9 s before it, at up to 4 pu/s.
+  // No state lies in between. A sample at a kink is the torque 1e-9 s before it, and the torque changes by up
+  // to 4 pu/s.
   EXPECT_LE(worst(reference(grid), Channel::Tm, expected), 1e-8);
   EXPECT_LE(worst(batch_run(grid), Channel::Tm, expected), 1e-8);
 }
@@ -214,8 +215,8 @@ TEST(Disturbances, ForcedOscillationMatchesTheLinearModel) {
     most = std::max(most, std::abs(speed[k] - expected));
     largest = std::max(largest, std::abs(expected));
   }
-  // The nonlinearity of a swing of 1e-4 pu is of second order; the angle for Ks still changes by 0.1 %
-  // because of its slow sine.
+  // The nonlinearity of a swing of 1e-4 pu is of second order. The angle from which Ks is computed still
+  // changes by 0.1 %, because its torque is a slow sine (1 mHz).
   EXPECT_LE(most, 5e-3 * largest);
   EXPECT_GT(largest, 1e-7);
   EXPECT_GT(operating.Tm, 0.0);

@@ -1,5 +1,5 @@
-// REECD1: equality with REECB1 without its own parts, compensated voltage, currents kept after a voltage dip,
-// blocking, tables.
+// REECD1: equality with REECB1 while the parts that REECB1 lacks are inactive, compensated voltage, currents
+// kept after a voltage dip, blocking, tables.
 #include <cmath>
 
 #include "tests/sim/effects/control_bench.hpp"
@@ -66,7 +66,7 @@ TEST(Reecd1, RegulatesTheVoltageBehindItsImpedanceOrWithDroop) {
     bench.run(1.0);
     const double off = compensated(0.8, -0.1) - compensated(0.8, -0.3),
                  seen = 1.0 - 0.1 * (1.0 - std::exp(-10.0));
-    EXPECT_NEAR(bench.out().Efd, 0.1 + 5.0 * off * seen, 1e-9);  // of the measurement behind 0.1 s
+    EXPECT_NEAR(bench.out().Efd, 0.1 + 5.0 * off * seen, 1e-9);  // integral of the filtered error (0.1 s)
   }
 }
 
@@ -133,7 +133,7 @@ TEST(Reecd1, TablesHaveTenPoints) {
   v["Vp3"] = 0.0;  // the table ends with its second point
   ControlBench short_one("REECD1", {{"Trv", 0.0}, {"Vp3", 0.0}, {"Ip3", 9.0}}, at_rated());
   EXPECT_EQ(short_one.refused, "");
-  EXPECT_NE(ControlBench("REECD1", v, at_rated()).refused, "");  // 0.04 pu
+  EXPECT_NE(ControlBench("REECD1", v, at_rated()).refused, "");  // limit from the table: 0.04 pu
 }
 
 TEST(Reecd1, ABatteryDrawsUpToKe) {

@@ -14,11 +14,11 @@ TEST(ExciterDcTypes, LeadLagPrecedesTheRegulator) {
     for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
       ControlBench bench(name, kLinearDc);
       ASSERT_TRUE(bench.problems.empty()) << name;
-      EXPECT_LT(bench.largest_derivative(), 1e-11) << name;  // rounding over TA, times KA
+      EXPECT_LT(bench.largest_derivative(), 1e-11) << name;  // rounding times KA/TA
       const C s(0.0, omega);
       C forward = 60.0 * lead_over_lag(0.7, 3.0, omega) * lead_over_lag(0.0, 0.08, omega) / (0.9 + 0.7 * s);
       const C closed = forward / (1.0 + forward * 0.05 * s / (1.0 + 0.9 * s));
-      // difference quotients over 1e-6, with KA/TA = 750 in them
+      // difference quotients with step 1e-6, amplified by KA/TA = 750
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - closed), 1e-6)
           << name;
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, &Signals<double>::Efd, omega) +

@@ -34,13 +34,13 @@ TEST(ExciterEsac1a, TransferFunctionIsTheDiagrams) {
     ControlBench bench("ESAC1A", linear);
     ASSERT_TRUE(bench.problems.empty());
     ASSERT_EQ(bench.refused, "");
-    EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding over TA, times KA
+    EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding times KA/TA
     EXPECT_DOUBLE_EQ(bench.out().Efd, 2.0);
     const C s(0.0, omega);
     const C forward =
         150.0 * lead_over_lag(0.3, 0.1, omega) * lead_over_lag(0.0, 0.05, omega) / (1.1 + 0.9 * s);
     const C closed = forward / (1.0 + forward * 1.1 * 0.04 * s / (1.0 + 0.8 * s));
-    // difference quotients over 1e-6, with KA/TA = 3000 in them
+    // difference quotients with step 1e-6, amplified by KA/TA = 3000
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - closed), 1e-5);
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, &Signals<double>::Efd, omega) +
                        closed * lead_over_lag(0.0, 0.02, omega)),
@@ -69,7 +69,7 @@ TEST(ExciterEsac1a, CeilingIsWhereTheFieldBalancesVrmaxAndReleaseIsImmediate) {
   const double saturation = std::pow(low + (high - low) * (ve - 3.14) / (4.18 - 3.14), 2);
   EXPECT_NEAR(ve + saturation + 0.38 * 2.0, 6.03, 1e-8);
   EXPECT_NEAR(bench.out().Efd, ve - 0.1 * 2.0 / std::sqrt(3.0), 1e-14);
-  // reference down: Va leaves its limit without delay, as a lag from 14.5
+  // reference lowered: Va leaves its limit of 14.5 pu without delay, as the output of a lag
   bench.in.dVref = -0.5;
   bench.run(0.01);
   EXPECT_LT(bench.state("Va"), 14.5);

@@ -20,8 +20,8 @@ C closed_loop(double omega) {
 TEST(ExciterEsst1a, TransferFunctionIsTheDiagrams) {
   for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
     ControlBench bench("ESST1A", kEsst1a);
-    EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding over TA = 0.05 s, times KA
-    // difference quotients over 1e-6, with KA/TA = 3000 in them
+    EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding times KA/TA with TA = 0.05 s
+    // difference quotients with step 1e-6, amplified by KA/TA = 3000
     EXPECT_LT(
         std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - closed_loop(omega)),
         1e-5);

@@ -16,7 +16,8 @@ Values esst3a_with(Values more) {
   for (const auto& [k, x] : more) v[k] = x;
   return v;
 }
-/// VB of these values by IEEE Std 421.5: phasors V and I of a bench, FEX of its first region.
+/// Source voltage VB for these values by IEEE Std 421.5, from the bench's phasors V and I; FEX is in its
+/// first region.
 double esst3a_source(const Signals<double>& s) {
   const C V(s.Vr, s.Vi), I(s.Ir, s.Ii), kp = std::polar(6.0, 20.0 * std::numbers::pi / 180.0);
   const double ve = std::abs(kp * V + C(0.0, 1.0) * (0.4 + kp * 0.08) * I);
@@ -31,12 +32,12 @@ TEST(ExciterEsst3a, TransferFunctionIsTheDiagrams) {
       ControlBench bench("ESST3A", v);
       ASSERT_TRUE(bench.problems.empty());
       ASSERT_EQ(bench.refused, "");
-      EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding over TA, times KA
+      EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding times KA/TA
       EXPECT_NEAR(bench.out().Efd, 2.0, 1e-14);
       const C inner = 4.0 * esst3a_source(bench.in) * lead_over_lag(0.0, v.at("TM"), omega);
       const C exact = 100.0 * lead_over_lag(v.at("TC"), v.at("TB"), omega) *
                       lead_over_lag(0.0, v.at("TA"), omega) * inner / (1.0 + v.at("KG") * inner);
-      // difference quotients over 1e-6, with gains of up to 2400 in them
+      // difference quotients with step 1e-6, amplified by gains of up to 2400
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - exact),
                 1e-7 * (1.0 + std::abs(exact)));
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, &Signals<double>::Efd, omega) +
@@ -67,7 +68,7 @@ TEST(ExciterEsst3a, BeyondVgmaxTheLoopIsOpen) {
         "ESST3A", esst3a_with({{"VGMAX", 1.9}, {"VMMAX", 99.0}, {"VBMAX", 99.0}, {"TB", 0.0}, {"TM", TM}}));
     bench.in.dVref = 0.005;
     bench.run(10.0);
-    // Vr rises by 100 0.005; KG Efd reaches VGMAX and the remainder is amplified by KM
+    // Vr rises by 100 x 0.005; KG Efd reaches VGMAX, and the remainder is amplified by KM
     const double VB = esst3a_source(bench.in), vr = 0.8 * 2.0 + 2.0 / VB / 4.0 + 0.5;
     const double expected = std::max(4.0 * vr / (1.0 + 4.0 * 0.8 * VB), 4.0 * (vr - 1.9)) * VB;
     EXPECT_GT(0.8 * expected, 1.9);
@@ -81,7 +82,7 @@ TEST(ExciterEsst3a, ErrorAndSourceAreLimited) {
   EXPECT_GT(esst3a_source(bench.in), 4.0);
   bench.in.dVref = 1.0;
   bench.run(60.0);
-  EXPECT_NEAR(bench.out().Efd, 3.0 * 4.0 * 4.0 / (1.0 + 4.0 * 0.8 * 4.0), 1e-4);  // 60 s of TB = 5 s
+  EXPECT_NEAR(bench.out().Efd, 3.0 * 4.0 * 4.0 / (1.0 + 4.0 * 0.8 * 4.0), 1e-4);  // after 60 s = 12 TB
 }
 
 TEST(ExciterEsst3a, RefusesOperatingPointBeyondItsLimits) {

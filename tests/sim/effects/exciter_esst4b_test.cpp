@@ -11,7 +11,7 @@ using C = std::complex<double>;
 using Values = ControlBench::Changes;
 constexpr auto kEsst4bEfd = &Signals<double>::Efd;
 
-/// KP, KI, KC, XL and THETAP all nonzero.
+/// Parameters with nonzero KP, KI, KC, XL and THETAP.
 Values esst4b_with(Values more) {
   Values v = {{"TR", 0.02}, {"KPR", 3.0},     {"KIR", 4.0},  {"TA", 0.05}, {"KPM", 0.6},
               {"KIM", 2.0}, {"KG", 0.15},     {"KP", 6.0},   {"KI", 0.4},  {"KC", 0.1},
@@ -19,7 +19,8 @@ Values esst4b_with(Values more) {
   for (const auto& [k, x] : more) v[k] = x;
   return v;
 }
-/// VB of these values by IEEE Std 421.5: phasors V and I of a bench, FEX of its first region.
+/// Source voltage VB for these values by IEEE Std 421.5, from the bench's phasors V and I; FEX is in its
+/// first region.
 double source(const Signals<double>& s) {
   const C V(s.Vr, s.Vi), I(s.Ir, s.Ii), kp = std::polar(6.0, 20.0 * std::numbers::pi / 180.0);
   const double ve = std::abs(kp * V + C(0.0, 1.0) * (0.4 + kp * 0.08) * I);
@@ -37,14 +38,14 @@ TEST(ExciterEsst4b, TransferFunctionIsTheDiagrams) {
       ControlBench bench("ESST4B", v);
       ASSERT_TRUE(bench.problems.empty());
       ASSERT_EQ(bench.refused, "");
-      EXPECT_LT(bench.largest_derivative(), 1e-12);  // rounding over TA
+      EXPECT_LT(bench.largest_derivative(), 1e-12);  // rounding divided by TA
       EXPECT_NEAR(bench.out().Efd, 2.0, 1e-14);
       const C s(0.0, omega);
       const double VB = source(bench.in);
       const C inner = v.at("KPM") + v.at("KIM") / s;
       const C exact = (v.at("KPR") + v.at("KIR") / s) * lead_over_lag(0.0, v.at("TA"), omega) * VB * inner /
                       (1.0 + v.at("KG") * VB * inner);
-      // difference quotients over 1e-6, times gains of up to 15 60
+      // difference quotients with step 1e-6, times gains of up to 15 x 60
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, kEsst4bEfd, omega) - exact),
                 1e-7 * (1.0 + std::abs(exact)));
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, kEsst4bEfd, omega) +
@@ -90,7 +91,7 @@ TEST(ExciterEsst4b, RegulatorsDoNotWindUpAndReleaseWithoutDelay) {
   EXPECT_NEAR(bench.state("xm"), clamped, 1e-12);  // rounding at the band's edge
   bench.in.dVref = -0.6;
   bench.run(0.2);
-  EXPECT_LT(bench.state("Va"), 0.0);  // 1.5 - 3 0.7 and falling, with TA = 0.05 s
+  EXPECT_LT(bench.state("Va"), 0.0);  // falls to 1.5 - 3 x 0.7, with TA = 0.05 s
   EXPECT_LT(bench.out().Efd, 0.6 * source(bench.in));
 }
 

@@ -14,14 +14,14 @@ TEST(ExciterExac1, TransferFunctionIsTheDiagramsWithALoadedRectifier) {
     ControlBench bench("EXAC1", values);
     ASSERT_TRUE(bench.problems.empty());
     ASSERT_EQ(bench.refused, "");
-    EXPECT_LT(bench.largest_derivative(), 1e-10);  // rounding over TA, times KA
+    EXPECT_LT(bench.largest_derivative(), 1e-10);  // rounding times KA/TA
     EXPECT_NEAR(bench.out().Efd, 2.0, 1e-14);
     const C s(0.0, omega);
     const C forward =
         150.0 * lead_over_lag(0.3, 0.1, omega) * lead_over_lag(0.0, 0.05, omega) / (1.1 + 0.9 * s);
     const C rate = 0.04 * s / (1.0 + 0.8 * s);
     const C closed = forward / (1.0 + forward * 1.1 * rate);
-    // difference quotients over 1e-6, with KA/TA = 3000 in them
+    // difference quotients with step 1e-6, amplified by KA/TA = 3000
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - closed), 1e-5);
     // Field current acts through KC/sqrt(3) without delay (first mode) and through KD, alternator and
     // feedback.

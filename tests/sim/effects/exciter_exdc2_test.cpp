@@ -1,4 +1,5 @@
-// EXDC2: transfer function against the diagram, voltage-dependent ceiling and limits, meaning of zeros.
+// EXDC2: transfer function against the diagram, voltage-dependent ceiling and limits, meaning of parameters
+// equal to zero.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -14,12 +15,12 @@ TEST(ExciterExdc2, TransferFunctionIsTheDiagrams) {
     ControlBench bench("EXDC2", linear);
     ASSERT_TRUE(bench.problems.empty());
     ASSERT_EQ(bench.refused, "");
-    EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding over TA, times KA
+    EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding times KA/TA
     const C s(0.0, omega);
     const C forward =
         60.0 * lead_over_lag(0.5, 2.0, omega) * lead_over_lag(0.0, 0.08, omega) / (0.9 + 0.7 * s);
     const C closed = forward / (1.0 + forward * 0.05 * s / (1.0 + 0.9 * s));
-    // difference quotients over 1e-6, with KA/TA = 750 in them
+    // difference quotients with step 1e-6, amplified by KA/TA = 750
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - closed), 1e-6);
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, &Signals<double>::Efd, omega) +
                        closed * lead_over_lag(0.0, 0.03, omega)),
@@ -32,7 +33,7 @@ TEST(ExciterExdc2, CeilingIsWhereSaturationBalancesVrmaxTimesV) {
   bench.in.V = 0.8;
   bench.in.dVref = 1.0;
   bench.run(30.0);                           // above E2 the exciter settles with TE/(KE + slope) < 0.8 s
-  EXPECT_NEAR(bench.out().Efd, 4.0, 1e-12);  // 4 (1 + 0.3) = 0.8 6.5
+  EXPECT_NEAR(bench.out().Efd, 4.0, 1e-12);  // 4 (1 + 0.3) = 0.8 x 6.5
   bench.in.dVref = -1.0;
   bench.in.V = 0.5;
   bench.run(30.0);
@@ -50,7 +51,7 @@ TEST(ExciterExdc2, ReleaseIsThatOfALimiterWithoutWindUp) {
   bench.run(2.0, 1e-4);
   bench.in.dVref = -1.0;
   bench.run(0.01, 1e-4);
-  // Vr falls from 6 pu towards rest - 40 with TA, delayed by at most 2 ms.
+  // Vr falls from 6 pu towards rest - 40 with the time constant TA, delayed by at most 2 ms.
   const auto falling = [&](double t) { return 6.0 + (rest - 40.0 - 6.0) * (1.0 - std::exp(-t / 0.1)); };
   EXPECT_GE(bench.state("Vr"), falling(0.01));
   EXPECT_LE(bench.state("Vr"), falling(0.008));
@@ -63,8 +64,8 @@ TEST(ExciterExdc2, FallingLimitPullsTheRegulatorDown) {
   bench.run(2.0, 1e-4);
   bench.in.V = 0.5;  // Vc is kept, so that the error stays constant
   bench.run(0.03, 1e-4);
-  // pulled to 3 pu, offset by the drive of its own lag: (rest + 8 - 3)/(TA 500 + 1)
-  EXPECT_NEAR(bench.state("Vr"), 3.0 + (rest + 8.0 - 3.0) / 51.0, 1e-5);  // exp(-0.03 510) of 3 pu
+  // the limit pulls Vr to 3 pu; the input of its lag keeps it higher by (rest + 8 - 3)/(500 TA + 1)
+  EXPECT_NEAR(bench.state("Vr"), 3.0 + (rest + 8.0 - 3.0) / 51.0, 1e-5);  // 3 pu exp(-0.03 x 510)
   bench.in.V = 1.0;
   bench.run(0.02, 1e-4);
   EXPECT_LT(bench.state("Vr"), 5.0);  // rises again with TA: 3.2 + 7.5 (1 - exp(-0.2)) = 4.5
@@ -72,7 +73,7 @@ TEST(ExciterExdc2, FallingLimitPullsTheRegulatorDown) {
 }
 
 TEST(ExciterExdc2, ZeroLimitsAndKeAreComputedAsInPsse) {
-  ControlBench limit("EXDC2", {{"VRMAX", 0.0}, {"VRMIN", -1.0}});  // VRMAX = (0.5 + 1) 5
+  ControlBench limit("EXDC2", {{"VRMAX", 0.0}, {"VRMIN", -1.0}});  // VRMAX = (0.5 + 1) x 5
   limit.in.dVref = 5.0;
   limit.run(60.0);
   const double efd = limit.out().Efd;  // solution of 7.5 = Efd + B (Efd - A)^2: E2
@@ -80,7 +81,7 @@ TEST(ExciterExdc2, ZeroLimitsAndKeAreComputedAsInPsse) {
   ControlBench self("EXDC2", {{"KE", 0.0}, {"VRMAX", 6.0}});
   EXPECT_DOUBLE_EQ(self.state("Vr"), 0.6);
   EXPECT_DOUBLE_EQ(self.out().Efd, 2.0);
-  EXPECT_LT(self.largest_derivative(), 1e-11);  // rounding over TA, times KA
+  EXPECT_LT(self.largest_derivative(), 1e-11);  // rounding times KA/TA
 }
 
 TEST(ExciterExdc2, RefusesOperatingPointBeyondItsLimits) {

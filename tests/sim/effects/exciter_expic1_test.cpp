@@ -28,7 +28,7 @@ TEST(ExciterExpic1, TransferFunctionIsTheDiagrams) {
     const Values v = expic1_with(more);
     const double VB = v.at("KP") > 0.0 ? std::abs(C(5.0, 1.5 * 0.8)) : 1.0;
     const double B =
-        [&] {  // through the two points, by their square roots
+        [&] {  // A and B of the saturation B (E - A)^2/E through the two points
           const double r = std::sqrt(0.05 / 0.9);
           const double A = (1.0 - r * 3.0) / (1.0 - r);
           return std::pair{A, 0.9 / ((3.0 - A) * (3.0 - A))};

@@ -12,11 +12,11 @@ const ControlBench::Changes kExst1Values = {{"TR", 0.02},   {"TC", 1.0},  {"TB",
 TEST(ExciterExst1, TransferFunctionIsTheDiagrams) {
   for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
     ControlBench bench("EXST1", kExst1Values);
-    EXPECT_LT(bench.largest_derivative(), 1e-12);  // rounding over TA = 0.05 s, times KA
+    EXPECT_LT(bench.largest_derivative(), 1e-12);  // rounding times KA/TA with TA = 0.05 s
     const C forward = 150.0 * lead_over_lag(1.0, 5.0, omega) * lead_over_lag(0.0, 0.05, omega);
     const C back = C(0.0, omega) * 0.03 * lead_over_lag(0.0, 0.8, omega);
     const C closed = forward / (1.0 + forward * back);
-    // difference quotients over 1e-6, with KA/TA = 3000 in them
+    // difference quotients with step 1e-6, amplified by KA/TA = 3000
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - closed), 1e-5);
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, &Signals<double>::Efd, omega) +
                        closed * lead_over_lag(0.0, 0.02, omega)),

@@ -1,4 +1,5 @@
-// IEEET1: transfer function against the diagram, ceiling by saturation, release, meaning of zeros.
+// IEEET1: transfer function against the diagram, ceiling by saturation, release, meaning of parameters equal
+// to zero.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {
@@ -12,11 +13,11 @@ TEST(ExciterIeeet1, TransferFunctionIsTheDiagrams) {
   for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
     ControlBench bench("IEEET1", linear);
     ASSERT_TRUE(bench.problems.empty());
-    EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding over TA, times KA
+    EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding times KA/TA
     const C s(0.0, omega);
     const C forward = 60.0 * lead_over_lag(0.0, 0.08, omega) / (0.9 + 0.7 * s);
     const C closed = forward / (1.0 + forward * 0.05 * s / (1.0 + 0.9 * s));
-    // difference quotients over 1e-6, with KA/TA = 750 in them
+    // difference quotients with step 1e-6, amplified by KA/TA = 750
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - closed), 1e-6);
     EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, &Signals<double>::Efd, omega) +
                        closed * lead_over_lag(0.0, 0.03, omega)),
@@ -36,7 +37,7 @@ TEST(ExciterIeeet1, CeilingIsWhereSaturationBalancesVrmaxAndReleaseIsImmediate) 
 }
 
 TEST(ExciterIeeet1, ZeroLimitsAndKeAreComputedAsInPsse) {
-  // VRMAX = (0.5 + 1) 5
+  // VRMAX = (0.5 + 1) x 5
   ControlBench limit("IEEET1", {{"VRMAX", 0.0}, {"VRMIN", -1.0}});
   limit.in.dVref = 5.0;
   limit.run(5.0);

@@ -1,5 +1,5 @@
-// REXS: transfer function against the diagram, step response against equations integrated here, limits,
-// refusals.
+// REXS: transfer function against the diagram, step response against the equations integrated in this file,
+// limits, refusals.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -49,7 +49,7 @@ TEST(ExciterRexs, TransferFunctionIsTheDiagrams) {
       const C inner = current * alternator / (1.0 + current * alternator * at("KH") * at("KE"));  // Vr to Efd
       const C feedback = at("KF") * s / (1.0 + at("TF") * s) *
                          lead_over_lag(at("TF2") > 0 ? at("TF1") : 0, at("TF2"), omega);
-      const C fed = at("FBF") == 0 ? C(1.0) : at("FBF") == 1 ? inner * at("KE") : inner;  // of Vr
+      const C fed = at("FBF") == 0 ? C(1.0) : at("FBF") == 1 ? inner * at("KE") : inner;  // per unit of Vr
       const C exact = regulator * inner / (1.0 + regulator * feedback * fed);
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, kEfd, omega) - exact),
                 1e-6 * (1.0 + std::abs(exact)));
@@ -136,13 +136,13 @@ TEST(ExciterRexs, StepsFollowTheEquationsThroughTheirLimits) {
   ASSERT_TRUE(bench.problems.empty());
   ASSERT_EQ(bench.refused, "");
   Drawn drawn;
-  double low = 0.1, high = 5.0;  // Ve of Efd = 2, by halving
+  double low = 0.1, high = 5.0;  // bisection for Ve at Efd = 2
   for (int i = 0; i < 60; ++i) (drawn.Efd((low + high) / 2) < 2.0 ? low : high) = (low + high) / 2;
   const double Vfe = drawn.field(low), Vr = 0.3 * Vfe + Vfe / 1.5;
   drawn.x = {1.0, Vr, Vr, Vr, Vr, Vfe, 0.0, Vfe, low};
   drawn.Vref = 1.0;
   double most = 0.0, worst = 0.0, least = 9.0;
-  for (int k = 0; k < 8000; ++k) {  // +0.2 for one second, -0.3 for four, back, then a sag
+  for (int k = 0; k < 8000; ++k) {  // reference +0.2 for 1 s, -0.3 for 4 s, unchanged, then a sag
     const double t = 0.001 * k;
     bench.in.dVref = drawn.dVref = t < 1 ? 0.2 : t < 5 ? -0.3 : 0.0;
     bench.in.V = bench.in.Vc = drawn.V = t < 7 ? 1.0 : 0.8;

@@ -18,7 +18,7 @@ TEST(ExciterSexs, StepOfTheReferenceFollowsTheClosedForm) {
     const double exact = 2.0 + K * step *
                                    (1.0 - (TB - TA) / (TB - TE) * std::exp(-t / TB) -
                                     (TE - TA) / (TE - TB) * std::exp(-t / TE));
-    EXPECT_NEAR(bench.out().Efd, exact, 1e-12) << t;  // 1 ms steps against 1 s: (1e-3)^4, and rounding
+    EXPECT_NEAR(bench.out().Efd, exact, 1e-12) << t;  // error of the steps, (1 ms / 1 s)^4, and rounding
   }
   bench.run(60.0);
   EXPECT_NEAR(bench.out().Efd, 2.0 + K * step, 1e-4);  // gain K; exp(-80 / 5) is 1e-7 of it
@@ -32,7 +32,7 @@ TEST(ExciterSexs, EveryInputEntersWithItsSign) {
     ControlBench bench("SEXS", kSexsValues);
     const auto h = bench.response(input, &Signals<double>::Efd, 0.7);
     const auto exact = sign * 20.0 * lead_over_lag(2.0, 5.0, 0.7) * lead_over_lag(0.0, 1.0, 0.7);
-    EXPECT_LT(std::abs(h - exact), 1e-8);  // difference quotient over 1e-6
+    EXPECT_LT(std::abs(h - exact), 1e-8);  // difference quotients with step 1e-6
   }
 }
 
@@ -66,7 +66,7 @@ TEST(ExciterSexs, ZeroTimeConstantPassesTheLeadLagOn) {
   bench.in.dVref = 0.05;
   EXPECT_NEAR(bench.out().Efd, 2.0 + 20.0 * 0.4 * 0.05, 1e-14);
   bench.run(1.0);
-  // 1 ms steps against 5 s, and rounding
+  // error of the steps, (1 ms / 5 s)^4, and rounding
   EXPECT_NEAR(bench.out().Efd, 2.0 + 20.0 * 0.05 * (1.0 - 0.6 * std::exp(-1.0 / 5.0)), 1e-12);
   bench.in.Vc = 0.5;
   EXPECT_EQ(bench.out().Efd, 4.0);

@@ -22,11 +22,11 @@ TEST(ExciterSt5b, TransferFunctionIsTheDiagrams) {
       ControlBench bench("ST5B", v);
       ASSERT_TRUE(bench.problems.empty());
       ASSERT_EQ(bench.refused, "");
-      EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding over TB2, times KR
+      EXPECT_LT(bench.largest_derivative(), 1e-11);  // rounding times KR/TB2
       const C out = lead_over_lag(0.0, v.at("T1"), omega);
       const C exact = 100.0 * lead_over_lag(v.at("TC1"), v.at("TB1"), omega) *
                       lead_over_lag(v.at("TC2"), v.at("TB2"), omega) * out;
-      // difference quotients over 1e-6, with KR TC2/TB2 = 400 in them
+      // difference quotients with step 1e-6, amplified by KR TC2/TB2 = 400
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vs, &Signals<double>::Efd, omega) - exact),
                 1e-7 * (1.0 + std::abs(exact)));
       EXPECT_LT(std::abs(bench.response(&Signals<double>::Vc, &Signals<double>::Efd, omega) +
@@ -56,7 +56,7 @@ TEST(ExciterSt5b, IntegralsDoNotWindUp) {
   bench.in.dVref = 1.0;
   bench.in.V = 0.6;
   bench.run(30.0);
-  // (VRMAX - KC Ifd - V VRMAX)/T1 against the return of 500/s
+  // excess over the limit V VRMAX: (VRMAX - KC Ifd - V VRMAX)/T1 divided by the return rate of 500/s
   EXPECT_LT(bench.state("Efd"), 3.0 + (5.0 - 0.2 - 3.0) / 0.04 / 500.0 + 1e-9);
   bench.in.dVref = -1.0;
   bench.run(0.1);  // the lead-lags leave their limits with TC1 + TC2, Efd with T1

@@ -30,7 +30,7 @@ TEST(FastValvingOnFault, EqualsFastValvingAtTheFaultTime) {
              never = run_with("FASTVALVE", {0.0, 1.15, 0.2, 0.5, 3.0}, kNearFault);
   const double apart = most_apart(at_time, never);
   EXPECT_GT(apart, 0.05);
-  // the detection delay of about 0.01 s: 0.012 s of 0.2 s of closing
+  // the detection delay of about 0.01 s; the limit is twice the ratio of 0.012 s to the closing time of 0.2 s
   EXPECT_LT(most_apart(on_fault, at_time), 0.12 * apart);
 }
 TEST(FastValvingOnFault, IgnoresRemoteFaults) {

@@ -18,7 +18,8 @@ TEST(GovernorDiesel, IsochronousGovernorIntegratesTheSpeed) {
     ControlBench bench("DEGOV", kDiesel);
     ASSERT_TRUE(bench.problems.empty());
     EXPECT_LT(bench.largest_derivative(), 1e-12);
-    // power follows the throttle times (1 + w): 0.8 of the speed
+    // the power is the engine's torque times (1 + w): the speed deviation also acts directly, with the factor
+    // 0.8
     const C exact = 0.8 - engine(omega, 0.04);
     const C h = bench.response(&Signals<double>::speed, &Signals<double>::Tm, omega);
     EXPECT_LT(std::abs(h - exact), 1e-4 * std::abs(exact))

@@ -14,7 +14,7 @@ TEST(GovernorGast, SmallSignalsFollowTheTransferFunction) {
   for (const double omega : {0.01, 0.1, 1.0, 10.0}) {
     const auto exact = -20.0 * lead_over_lag(0.0, 0.4, omega) * lead_over_lag(0.0, 0.1, omega) - 0.3;
     const auto h = bench.response(&Signals<double>::speed, &Signals<double>::Tm, omega);
-    EXPECT_LT(std::abs(h - exact), 1e-7 * (1.0 + std::abs(exact))) << omega;  // differences over 1e-6
+    EXPECT_LT(std::abs(h - exact), 1e-7 * (1.0 + std::abs(exact))) << omega;  // difference step: 1e-6
   }
 }
 

@@ -33,7 +33,7 @@ TEST(GovernorGgov1, SmallSignalsFollowTheTransferFunction) {
         if (code == -2.0) stroke /= 1.0 + 0.05 * pid(s);
         const Complex exact = 1.5 * (stroke * actuator + flag * valve) * lead_over_lag(0.1, 0.6, omega) - 0.2;
         const Complex h = bench.response(&Signals<double>::speed, &Signals<double>::Tm, omega);
-        EXPECT_LT(std::abs(h - exact), 1e-6 * (1.0 + std::abs(exact)))  // differences over 1e-6
+        EXPECT_LT(std::abs(h - exact), 1e-6 * (1.0 + std::abs(exact)))  // difference quotients with step 1e-6
             << code << " " << flag << " " << omega;
         const Complex by_power = bench.response(&Signals<double>::P, &Signals<double>::Tm, omega);
         const Complex droop =
@@ -45,7 +45,8 @@ TEST(GovernorGgov1, SmallSignalsFollowTheTransferFunction) {
 }
 
 TEST(GovernorGgov1, DroopInTheSteadyState) {
-  // f of the stroke: 0.01 of speed moves stroke by -0.01/0.05, power by Kturb times that.
+  // Droop from the valve stroke: a speed deviation of 0.01 moves the stroke by -0.01/0.05, the power by Kturb
+  // times that.
   ControlBench bench = bench_with({{"Rselect", -1.0}, {"Dm", 0.0}});
   bench.in.speed = 0.002;
   bench.run(400.0, 5e-3);
@@ -57,7 +58,7 @@ TEST(GovernorGgov1, DroopInTheSteadyState) {
 }
 
 TEST(GovernorGgov1, BaseOfTheTurbineRating) {
-  // 100 MVA machine with a 125 MW turbine: 0.8 pu are 0.64 pu there.
+  // Machine of 100 MVA with a turbine of 125 MW: 0.8 pu of the machine are 0.64 pu of the turbine.
   ControlBench bench = bench_with({{"Trate", 125.0}, {"Dm", 0.0}});
   EXPECT_NEAR(bench.state("valve"), 0.64 / 1.5 + 0.2, 1e-15);
   EXPECT_NEAR(bench.out().Tm, 0.8, 1e-15);
@@ -102,8 +103,8 @@ TEST(GovernorGgov1, ValveRespectsRateAndPositionLimits) {
   EXPECT_NEAR(bench.state("valve"), 0.15, 1e-9);  // Vmin
 }
 
-/// While the machine accelerates at a > Aset the stroke falls at Ka (a - Aset), else it may rise at
-/// Ka (Aset - a). Once the washout has settled, the acceleration is the slope of the speed.
+/// While the machine accelerates at a > Aset the stroke falls at Ka (a - Aset), else it may rise at Ka (Aset
+/// - a). Once the washout has settled, the measured acceleration is the rate of change of the speed.
 TEST(GovernorGgov1, AccelerationLimiterRampsTheStroke) {
   ControlBench bench =
       bench_with({{"Kpgov", 0.0}, {"Kdgov", 0.0}, {"Kigov", 0.0}, {"Aset", 0.01}, {"Ka", 5.0}, {"Ta", 0.05}});
@@ -113,7 +114,7 @@ TEST(GovernorGgov1, AccelerationLimiterRampsTheStroke) {
     bench.in.speed = slope * (t + step / 2);
     bench.run(step, step);
   }
-  // Measured acceleration slope (1 - exp(-t/Ta)): its integral is slope Ta below slope t; during the first
+  // The measured acceleration is slope (1 - exp(-t/Ta)), and its integral is slope (t - Ta). During the first
   // milliseconds the state follows `wanted` from above. Tolerance: step * slope * Ka, because the speed is
   // constant during each step.
   const double expected = start - 5.0 * (slope - 0.01) * seconds + 5.0 * slope * 0.05;

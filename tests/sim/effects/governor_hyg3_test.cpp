@@ -91,7 +91,7 @@ TEST(GovernorHyg3, DeadBandIsInHertzAndBacklashInMegawatts) {
   bench.in.speed = 0.002;
   bench.run(900.0, 1e-2);
   EXPECT_NEAR(bench.state("position"), before - 0.001 / 0.04, 1e-5);
-  EXPECT_NEAR(bench.state("position") - bench.state("gate"), 0.02, 1e-4);  // 2 MW of 100
+  EXPECT_NEAR(bench.state("position") - bench.state("gate"), 0.02, 1e-4);  // 2 MW of 100 MW
   bench.in.speed = -0.004;
   bench.run(900.0, 1e-2);
   EXPECT_NEAR(bench.state("position"), before + 0.002 / 0.04, 1e-5);

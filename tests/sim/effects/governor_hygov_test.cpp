@@ -20,7 +20,7 @@ TEST(GovernorHygov, SmallSignalsFollowTheTransferFunction) {
     const auto flow = 1.0 / (1.0 + s * TW * gate / 2.0), head = 2.0 / gate * (flow - 1.0);
     const auto exact = opening * At * (flow + head * flow_at_work) - 0.4 * gate;
     const auto h = bench.response(&Signals<double>::speed, &Signals<double>::Tm, omega);
-    EXPECT_LT(std::abs(h - exact), 1e-7 * (1.0 + std::abs(exact))) << omega;  // differences over 1e-6
+    EXPECT_LT(std::abs(h - exact), 1e-7 * (1.0 + std::abs(exact))) << omega;  // difference step: 1e-6
   }
 }
 

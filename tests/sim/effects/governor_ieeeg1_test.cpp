@@ -19,7 +19,7 @@ TEST(GovernorIeeeg1, SmallSignalsFollowTheTransferFunction) {
     const auto x4 = lag(0.3), x5 = x4 * lag(7.0), x6 = x5 * lag(0.5), x7 = x6 * lag(0.4);
     const auto exact = valve * (0.3 * x4 + 0.4 * x5 + 0.2 * x6 + 0.1 * x7);
     const auto h = bench.response(&Signals<double>::speed, &Signals<double>::Tm, omega);
-    EXPECT_LT(std::abs(h - exact), 1e-7 * (1.0 + std::abs(exact))) << omega;  // differences over 1e-6
+    EXPECT_LT(std::abs(h - exact), 1e-7 * (1.0 + std::abs(exact))) << omega;  // difference step: 1e-6
   }
 }
 

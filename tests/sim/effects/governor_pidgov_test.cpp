@@ -67,7 +67,8 @@ TEST(GovernorPidgov, GateRespectsVelocityAndPositionLimits) {
   EXPECT_LT(first, before);
   bench.run(10.0);
   EXPECT_EQ(bench.state("gate"), 0.2);
-  EXPECT_NEAR(bench.out().Tm, 0.1 - 0.4 * 0.5, 1e-6);  // (0.2 - 0.1) 0.4/0.4; the water column settles
+  // power at gate 0.2, once the water column has settled: (0.2 - 0.1) x 0.4/0.4
+  EXPECT_NEAR(bench.out().Tm, 0.1 - 0.4 * 0.5, 1e-6);
   ControlBench up("PIDGOV", pidgov_with({{"VELMAX", 0.1}, {"GMAX", 0.9}}));
   up.in.speed = -0.5;
   up.run(1.0);

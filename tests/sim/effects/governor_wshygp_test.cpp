@@ -27,7 +27,7 @@ TEST(GovernorWshygp, TransferFunctionIsTheDiagrams) {
                            {{"TRATE", 80.0}},
                            {{"TT", 0.0}, {"TRATE", 80.0}}}) {
     const Values v = wshygp_with(more);
-    // psse()'s machine has 100 MVA
+    // the bench's machine has 100 MVA
     const double base = v.contains("TRATE") ? 100.0 / 80.0 : 1.0;
     if (base > 1.0 && v.at("TT") > 0.0) continue;  // beyond the curve's last point, extrapolated linearly
     for (const double omega : {0.02, 0.3, 4.0}) {

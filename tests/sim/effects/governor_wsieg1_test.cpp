@@ -1,4 +1,5 @@
-// WSIEG1: IEEEG1 without its own parts, the valve's curve, its backlash, blocked directions.
+// WSIEG1: equality with IEEEG1 while the parts that IEEEG1 lacks are inactive, the valve's curve, its
+// backlash, blocked directions.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {

@@ -43,7 +43,7 @@ TEST(LimiterMaxex1, LowersByItsGainWithoutAnIntegral) {
   EXPECT_NEAR(bench.out().Vlimiter, 0.04 * 2.5 * (0.9 - 0.95), 1e-12);
   bench.in.Efd = 2.5 * 0.8;
   bench.run(0.5, 0.002);
-  EXPECT_EQ(bench.out().Vlimiter, 0.0);  // it can only lower
+  EXPECT_EQ(bench.out().Vlimiter, 0.0);  // the limiter can only lower the reference
 }
 
 TEST(LimiterMaxex1, FadesInWithItsMeasurement) {

@@ -47,12 +47,12 @@ TEST(LimiterUel1, TransferFunctionIsTheDiagrams) {
     deliver(bench.in, std::polar(1.0, 0.3), {0.8, -0.9});
     bench.state("Vui") = 0.4;  // inside every limit
     bench.state("lead1") = bench.state("lead2") = 0.7;
-    // |KUC V - j I| by the imaginary part of the current
+    // derivative of |KUC V - j I| with respect to the imaginary part of the current
     const C phasor = 1.38 * C(bench.in.Vr, bench.in.Vi) - C(0.0, 1.0) * C(bench.in.Ir, bench.in.Ii);
     const C exact = phasor.real() / std::abs(phasor) * (0.7 + 3.0 / C(0.0, omega)) *
                     lead_over_lag(0.3, 0.05, omega) * lead_over_lag(0.2, 0.6, omega);
     const C found = bench.response(&Signals<double>::Ii, &Signals<double>::Vlimiter, omega);
-    // difference quotients over 1e-6, amplified 6 times by the leads
+    // difference quotients with step 1e-6, amplified 6 times by the leads
     EXPECT_LT(std::abs(found - exact), 1e-7 * (1.0 + std::abs(exact))) << omega;
   }
 }
@@ -63,7 +63,7 @@ TEST(LimiterUel1, WindsUpToItsLimitAndReturnsFromThere) {
   deliver(bench.in, 1.0, {0.8, -0.9});
   bench.run(5.0);
   EXPECT_EQ(bench.state("Vui"), 0.2);
-  EXPECT_EQ(bench.out().Vlimiter, 0.22);  // 0.2 + 0.1 e is more
+  EXPECT_EQ(bench.out().Vlimiter, 0.22);  // 0.2 + 0.1 e exceeds the limit
   deliver(bench.in, 1.0, {0.8, 0.0});
   bench.run(0.1);
   EXPECT_NEAR(bench.state("Vui"), 0.2 + 2.0 * inside * 0.1, 1e-12);

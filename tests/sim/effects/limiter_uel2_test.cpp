@@ -78,9 +78,9 @@ TEST(LimiterUel2, TransferFunctionIsTheDiagrams) {
     const C behind = (0.7 + 3.0 / s) * lead_over_lag(0.3, 0.05, omega) * lead_over_lag(0.2, 0.6, omega);
     const C of_q = -behind / (1.0 + 0.4 * s);
     const C of_p = behind * (0.07 / 0.3) / (1.0 + 5.0 * s);  // slope from (0.6, -0.28) to (0.9, -0.21)
-    // d(Q' Vf^2)/dV with P' = P/Vf^2 behind TUP = 5 s, both of Vf behind TUV = 5 s
+    // d(Q' Vf^2)/dV: P' = P/Vf^2 is filtered with TUP = 5 s, and Vf in both terms with TUV = 5 s
     const C of_v = behind / (1.0 + 5.0 * s) * (2.0 * -0.245 + (0.07 / 0.3) * (-2.0 * 0.75) / (1.0 + 5.0 * s));
-    // difference quotients over 1e-6, amplified 6 times by the leads
+    // difference quotients with step 1e-6, amplified 6 times by the leads
     const auto near = [&](const C& found, const C& exact, const char* of) {
       EXPECT_LT(std::abs(found - exact), 1e-7 * (1.0 + std::abs(exact))) << of << " " << omega;
     };
@@ -96,7 +96,7 @@ TEST(LimiterUel2, WindsUpToItsLimitAndReturnsFromThere) {
   bench.in.Q = -0.9;
   bench.run(5.0);
   EXPECT_EQ(bench.state("Vui"), 0.2);
-  EXPECT_EQ(bench.out().Vlimiter, 0.22);  // 0.2 + 0.1 e is more
+  EXPECT_EQ(bench.out().Vlimiter, 0.22);  // 0.2 + 0.1 e exceeds the limit
   bench.in.Q = 0.0;
   bench.run(0.1);
   EXPECT_NEAR(bench.state("Vui"), 0.2 - 2.0 * 0.245 * 0.1, 1e-12);

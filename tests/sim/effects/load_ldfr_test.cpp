@@ -54,7 +54,7 @@ TEST(LoadCim6, EqualsCim5_WithTheSameTorque) {
                                                               {"E", 1.5}, {"C0", 0.3}, {"Mbase", 100.0}};
   const Complex v = std::polar(0.8, 0.25);
   EXPECT_EQ(drawn_by(consumer("CIM6", torque), v), drawn_by(consumer("CIM5", torque), v));
-  // one column per letter in PSS/E's order
+  // the .dyr record has 24 columns, in PSS/E's order
   EXPECT_EQ(std::size(load_cim6::Model::dyr_columns), 24u);
 }
 

@@ -98,7 +98,7 @@ TEST(Svsmo1, StartsAtItsSusceptanceAndFollowsTheSquareOfTheVoltage) {
   EXPECT_NEAR(bench.delivered().real(), 0.0, 1e-15);
 }
 
-/// Closed form: integral of a lagged error step behind the lag of the firing.
+/// Closed form of B's response to a step of the error: lag T1, integrator K, lag T2 of the firing.
 double after_a_step(double error, double t) {
   const double T1 = 0.02, T2 = 0.05, K = 20.0, e1 = std::exp(-t / T1), e2 = std::exp(-t / T2);
   return K * error * (t - T2 + T2 * e2 - T1 * (1 - e2) + T1 * (e1 - e2) / (1 - T2 / T1));
@@ -136,8 +136,8 @@ TEST(Svsmo1, GainActsThroughTheLeadLagWithinErrorLimits) {
                {"T2", 1e-3},
                {"Vemax", 0.02}});
   bench.both(kV0 - 0.05);
-  bench.run(0.02);  // a quarter of the error's limit through the lead, plus the lagged part
-  EXPECT_NEAR(bench.B() - kB0, 10 * 0.02 * (1 - 0.75 * std::exp(-0.019 / 0.4)), 2e-5);  // T2 = 1 ms late
+  bench.run(0.02);  // Tc2/Tb2 = a quarter of the limited error acts at once, the rest with the lag Tb2
+  EXPECT_NEAR(bench.B() - kB0, 10 * 0.02 * (1 - 0.75 * std::exp(-0.019 / 0.4)), 2e-5);  // T2 = 1 ms later
   bench.run(5.0);
   EXPECT_NEAR(bench.B() - kB0, 10 * 0.02, 1e-6);
 }

@@ -41,7 +41,8 @@ TEST(PmuFilterP, TwoCycleTriangleHasASquaredSincResponse) {
   for (const double hz : {0.5, 2.0, 10.0, 30.0}) {
     const double x = kPi * hz / 60.0, phase = 2 * kPi * hz / 960.0;
     const auto g = gain(960.0, hz, {kClassP, 1, 60, 0});
-    // Samples `phase` apart: the cubic through them has lost phase^4 / 80 at most. Even window: no turn.
+    // The cubic through samples `phase` [rad] apart reduces the gain by at most phase^4 / 80. The window is
+    // even, so it does not shift the phase.
     EXPECT_NEAR(g.real(), sinc(x) * sinc(x), std::pow(phase, 4) / 80 + 1e-9) << hz << " Hz";
     EXPECT_NEAR(g.imag(), 0.0, 1e-13) << hz << " Hz";
   }
@@ -101,8 +102,9 @@ TEST(PmuFilterM, EqualsTheStandardsWindow) {
         sum += tap;
         of += tap * std::cos(2 * kPi * hz * k / 960.0);
       }
-      // The last taps count half in an integral. They are largest with 120 reports, 0.08 x 0.12 of a sum of
-      // 15; both taps, in the average and in its divisor: 2 x 2 x 0.5 x 0.0098 / 15 = 1.3e-3.
+      // The filter's integral gives the two end taps half weight, the standard's sum full weight. The end
+      // taps are largest with 120 reports/s: 0.08 x 0.12 = 0.0098 each, while all taps sum to 15. Two taps,
+      // each in the average and in its divisor, give 2 x 2 x 0.5 x 0.0098 / 15 = 1.3e-3.
       EXPECT_NEAR(gain(960.0, hz, {kClassM, 1, row.reports, 1}).real(), of / sum, 1.5e-3)
           << row.reports << " reports, " << hz << " Hz";
     }
@@ -153,8 +155,9 @@ TEST(PmuFrequency, DifferenceAndAverageOfASine) {
   const Phasors both = measured("PMUFREQ", {span, smoothing}, before);
   for (std::size_t k = 60; k < before.V.size() - 60; ++k) {
     const double deviation = A * W * std::cos(W * static_cast<double>(k) / rate) / (2 * kPi * 60.0);
-    // A sine keeps its shape: sinc of half the span, of half the smoothing. 3 Hz are 0.05 pu. The cubic
-    // through samples 0.042 rad apart is 1e-6 A off at both ends of the span: 1e-6 0.8 / (0.1 2 pi 60).
+    // A sine stays a sine: the difference reduces it by sinc(W span / 2), the average by sinc(W smoothing /
+    // 2). 3 Hz are 0.05 pu. The cubic through samples 0.042 rad apart errs by 1e-6 A at each end of the span,
+    // which gives 2e-6 x 0.4 / (0.1 x 2 pi x 60).
     EXPECT_NEAR(difference.df[k], 0.05 + deviation * sinc(W * span / 2), 1e-7);
     EXPECT_NEAR(both.df[k], 0.05 + deviation * sinc(W * span / 2) * sinc(W * smoothing / 2), 1e-6);
     EXPECT_EQ(both.V[k], before.V[k]);

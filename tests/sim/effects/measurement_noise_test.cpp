@@ -17,7 +17,7 @@ Phasors constant(std::size_t samples = kMany, double rate = 60.0) {
 }
 
 struct Moments {
-  double mean = 0.0, deviation = 0.0, outside = 0.0;  ///< outside: share beyond two deviations
+  double mean = 0.0, deviation = 0.0, outside = 0.0;  ///< outside: fraction beyond two deviations
 };
 template <class Value>
 Moments moments(std::size_t n, const Value& value) {
@@ -76,7 +76,7 @@ TEST(Noise, DependsOnTheSeedOnly) {
 }
 
 TEST(Gaps, HaveTheRequestedRateAndLength) {
-  // Gaps of 0.2 s, 0.5 of them per second of good record at 60/s: a share 0.1 / 1.1 is missing.
+  // Gaps of 0.2 s, 0.5 of them per second of good record at 60/s: a fraction of 0.1 / 1.1 is missing.
   const std::size_t n = 600000;
   const Phasors a = measured("GAPS", {0.5, 0.2}, constant(n), 4);
   std::size_t missing = 0, gaps = 0;

@@ -57,7 +57,7 @@ TEST(SetpointLcfb1, FlagsSelectItsInputs) {
   EXPECT_EQ(ControlBench("LCFB1", {{"PBF", 2.0}, {"EMAX", -1.0}}).problems.list().size(), 2u);
 }
 
-// Unit of the governor: a speed reference changes the power through the droop.
+// The reference has the governor's unit: a speed reference changes the power through the droop.
 TEST(SetpointLcfb1, MovesTheReferenceInTheGovernorsOwnUnit) {
   const auto moved = [](const char* governor, const Values& changes) {
     ControlBench bench(governor, changes);

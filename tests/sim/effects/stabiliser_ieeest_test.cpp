@@ -49,14 +49,14 @@ TEST(StabiliserIeeest, TransferFunctionForEveryOrderOfTheFilter) {
       EXPECT_EQ(bench.out().Vs, 0.0);
       for (const double omega : {0.1, 1.0, 7.0, 40.0}) {
         const C exact = diagram(values, omega);
-        // difference quotients over 1e-6, magnified by up to 1/A2 = 1000
+        // difference quotients with step 1e-6, magnified by up to 1/A2 = 1000
         EXPECT_LT(std::abs(bench.response(input, kVs, omega) - exact), 1e-6 * (1.0 + std::abs(exact)));
       }
     }
   }
 }
 
-/// Input codes 2 and 6 measure s/(1 + s Tf) of the terminal's angle and of its magnitude.
+/// Input codes 2 and 6 measure s/(1 + s Tf) times the angle and the magnitude of the terminal voltage.
 TEST(StabiliserIeeest, FrequencyAndVoltageDerivativeAreLagged) {
   const double w0 = 2 * 3.14159265358979323846 * 60, Tf = 0.03;
   for (const double code : {2.0, 6.0}) {
@@ -71,7 +71,7 @@ TEST(StabiliserIeeest, FrequencyAndVoltageDerivativeAreLagged) {
       const auto move = [&](Signals<double>& signal, double d) {
         (code == 2.0 ? signal.Vi : signal.V) += d;  // at V = 1 pu the change of the angle equals that of Vi
       };
-      // difference quotients over 1e-6
+      // difference quotients with step 1e-6
       EXPECT_LT(std::abs(bench.response(move, kVs, omega) - exact), 1e-6 * (1.0 + std::abs(exact)));
     }
   }

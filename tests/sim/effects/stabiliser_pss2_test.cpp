@@ -33,7 +33,7 @@ C behind(const Values& v, double omega) {
          lead_over_lag(value(v, "T3"), value(v, "T4"), omega) *
          lead_over_lag(value(v, "T10"), value(v, "T11"), omega);
 }
-/// Of both stabilisers, all different; a PSS2B has a third lead-lag as well.
+/// Values of the parameters that both stabilisers have, all different. PSS2B also has a third lead-lag.
 Values common(Values more) {
   Values v = {{"Tw1", 2.1}, {"Tw2", 3.3}, {"T6", 0.03}, {"Tw3", 2.7}, {"Tw4", 1.9}, {"T7", 2.3},
               {"KS2", 0.3}, {"KS3", 0.9}, {"T8", 0.4},  {"T9", 0.11}, {"KS1", 7.0}, {"T1", 0.2},
@@ -58,7 +58,7 @@ void expect_diagram(const char* name, Values v, double omega) {
   EXPECT_EQ(bench.out().Vs, 0.0);
   const C one = first(v, omega) * ramp_tracking(v, omega) * behind(v, omega);
   const C two = second(v, omega) * (value(v, "KS3") * ramp_tracking(v, omega) - 1.0) * behind(v, omega);
-  // difference quotients over 1e-6, magnified by the leads' T1 T3 T10/(T2 T4 T11) = 150
+  // difference quotients with step 1e-6, magnified by the leads' T1 T3 T10/(T2 T4 T11) = 150
   EXPECT_LT(std::abs(bench.response(&Signals<double>::speed, kOutput, omega) - one),
             1e-6 * (1 + std::abs(one)))
       << name << " at " << omega;

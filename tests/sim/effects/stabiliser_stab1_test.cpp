@@ -16,7 +16,7 @@ TEST(StabiliserStab1, TransferFunctionIsTheDiagrams) {
     const C s(0.0, omega);
     const C exact =
         8.0 * 3.0 * s / (1.0 + 3.0 * s) * lead_over_lag(0.3, 0.05, omega) * lead_over_lag(0.3, 0.1, omega);
-    // difference quotients over 1e-6, times a gain of up to 144
+    // difference quotients with step 1e-6, times a gain of up to 144
     EXPECT_LT(std::abs(bench.response(&Signals<double>::speed, &Signals<double>::Vs, omega) - exact), 1e-6);
   }
 }

@@ -26,13 +26,14 @@ std::string bus_of(int number) {
   const char* name = number == 101 ? "NORTH" : number == 102 ? "EAST" : "SOUTH";
   return fmt::format("{} \"{:<12}\" 138.00", number, name);
 }
-/// A line, in two lines of the file.
+/// A transmission line, written on two lines of the file.
 std::string line(int from, int to, const char* values, int section = 1, const char* second = "0.0 0.0 1.0") {
   return fmt::format(
       "{} {} \"1 \" {} \"  \" : {} 250 0 0 0 0.0 1.0 /\n 1 1 {} 400101 391231 0 1 0 0 0 0 0 {} 0 0\n",
       bus_of(from), bus_of(to), section, values, second, kOwners);
 }
-/// A transformer in four lines: `z`: tbase and impedances, `taps`: tapp, tapfp, tapfs, tapft.
+/// A transformer, written on four lines of the file. `z`: tbase and impedances; `taps`: tapp, tapfp, tapfs,
+/// tapft.
 std::string transformer(int from, int to, const std::string& tertiary, const char* z, const char* volts,
                         const char* taps, const char* last = "0.0 0.0 0.0 0.0", const char* angle = "5.0") {
   return fmt::format(
@@ -317,7 +318,7 @@ TEST(EpcRepairs, RepeatedLineIsKeptAndDanglingLoadLeftOutOnRequest) {
   EXPECT_EQ(n.branches[2].circuit, "R1");
   EXPECT_EQ(n.branches[2].x, 0.24);
   EXPECT_THAT(places(n, "ignored, as requested"), ElementsAre(HasSubstr("load record at bus 177")));
-  options.repeated = Repeated::voltages;  // the voltages agree with one line
+  options.repeated = Repeated::voltages;  // the file's voltages fit a single line
   EXPECT_FALSE(parse_epc(c.text(), "case.epc", options).branches[2].in_service);
 }
 

@@ -143,7 +143,7 @@ TEST(Matpower, TruncatedFilesAreReported) {
   std::string lines;
   std::istringstream in(kCase);
   int count = 0;
-  // Complete from the end of the branch matrix on; costs and names are not needed.
+  // The file is complete once the branch matrix has ended; costs and names are not needed.
   const int whole = line_of(kCase, "mpc.gencost") - 1;
   for (std::string line; std::getline(in, line); ++count) {
     if (count >= whole) break;

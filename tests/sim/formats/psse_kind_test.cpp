@@ -63,8 +63,8 @@ TEST(PsseKind, ReportsAWrongVersionWithTheRightOne) {
   EXPECT_EQ(problems_of([&] { parse_raw_survey(header, "case.raw"); }).size(), 1u);
 }
 
-/// A decimal is read as the nearest double, also with extended precision, and written back with as few
-/// digits.
+/// A decimal is read as the nearest double, which rounding through extended precision may miss, and written
+/// back with no more digits.
 TEST(PsseKind, NumbersAreNearestDoublesAndAreWrittenAsShort) {
   std::mt19937_64 random(7);
   int differ = 0;

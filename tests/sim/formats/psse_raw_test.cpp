@@ -207,7 +207,7 @@ TEST_P(PsseRawDevices, PowerFollowsFromTheFileVoltages) {
   ASSERT_FALSE(n.remarks.empty());
   EXPECT_THAT(n.remarks[0].what, HasSubstr("equipment without a model"));
   EXPECT_THAT(n.remarks[0].places.back(), HasSubstr("at bus 103"));
-  // Without a solved case its power is unknown.
+  // If the case is not solved, the device's power is unknown.
   RawCase flat;
   flat.other[GetParam().bus] = GetParam().record;
   flat.loads = "102,'1',1,1,1,10.0,0\n";

@@ -43,7 +43,7 @@ TEST(FoundCase, GeneratorsWithoutAMachineBecomeNegativeLoadsOnRequest) {
 TEST(FoundCase, RecordsWithoutAGeneratorAreLeftOutWithARemark) {
   formats::RawCase raw;
   raw.generators += "102,'2',10,0,100,-100,1.02,0,100,0,0.3,0,0,1,0\n";
-  // The model of the generator out of service may be unknown; the other two are named.
+  // An unknown model of a generator out of service is accepted; the remark names the other two records.
   const Grid grid =
       make(raw, kBoth + "102 'STRANGE' 2 1 2 /\n103 'GENCLS' 1 3 0 /\n102 'SEXS' X 0.1 10 100 0.1 0 3 /\n");
   EXPECT_THAT(places(grid, "does not have are ignored"),

@@ -199,7 +199,7 @@ TEST(OperatingPoint, HasTheReferencesStatesAndFieldVoltage) {
   EXPECT_NEAR(o.s.Ifd, 1.3218571157442645, tolerance);
   EXPECT_NEAR(o.Tm, 2.3239327730935737 / 6.15, tolerance);
   EXPECT_NEAR(o.x[2], 1.0090023676343605, tolerance);             // E'q
-  EXPECT_NEAR(o.x[4], 0.9795973618827838, tolerance);             // psi1d, e2d there
+  EXPECT_NEAR(o.x[4], 0.9795973618827838, tolerance);             // psi1d, called e2d in ANDES
   EXPECT_NEAR(std::abs(o.x[5]), 0.39848465513678144, tolerance);  // psi2q: the sign is a convention
 }
 

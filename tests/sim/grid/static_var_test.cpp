@@ -111,7 +111,7 @@ TEST(StaticVar, ReportsEveryError) {
   const std::string few =
       formats::sentences_of([] { load_from(with_shunt(), kPlants + "103 'SVSMO1T2' 103 0 0 1 2 /\n"); });
   EXPECT_THAT(few, HasSubstr("of 8 switched shunts"));
-  std::string text = record("103");  // a text is defined only relative to its switched shunts
+  std::string text = record("103");  // a text is allowed only in the list of switched shunts
   text.replace(text.find(" 0.18 "), 6, " 'B' ");
   EXPECT_THAT(formats::sentences_of([&] { load_from(with_shunt(), kPlants + text); }),
               HasSubstr("SVSMO1T2 parameter 19 = 'B'"));

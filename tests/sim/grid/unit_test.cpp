@@ -154,7 +154,8 @@ TEST_F(UnitTest, TransformersInSeriesAreJoined) {
   double r = 0, x = 0, n = 0;
   unit.plant.transformer.effect->get<double>().transformer.impedance(unit.plant.transformer.p.data(), r, x,
                                                                      n);
-  // The first: ratio 1/1.05, impedance times 1.05^2; the second behind it: times 1.05^2 too, ratio 1.02.
+  // First transformer: ratio 1/1.05, impedance times 1.05^2. Second transformer, behind the first: impedance
+  // also times 1.05^2, ratio 1.02.
   EXPECT_NEAR(r, 2.5 * 1.1025 * (0.003 + 0.002), 1e-12);
   EXPECT_NEAR(x, 2.5 * 1.1025 * (0.09 + 0.05), 1e-12);
   EXPECT_NEAR(n, 1.02 / 1.05, 1e-12);

@@ -126,7 +126,8 @@ TEST_F(Reduction, AFaultImpedanceConvergesLinearlyToTheBoltedFault) {
   for (const double x : reactances)
     gap.push_back((reduce(network, flow, {{{bus, {0.0, x}}}, {}}, kept).y - solid).cwiseAbs().maxCoeff());
   for (std::size_t k = 1; k < gap.size(); ++k)
-    // The next order is x times the driving-point admittance of the faulted bus, about 110 pu.
+    // The quadratic term, relative to the linear one, is x times the driving-point admittance of the faulted
+    // bus, about 110 pu.
     EXPECT_NEAR(gap[k - 1] / gap[k], 10.0, 10.0 * 150.0 * reactances[k - 1]);
   EXPECT_LT(gap.back(), 1e-4);
 }

@@ -33,7 +33,7 @@ double imbalance(const Network& n, const std::vector<Complex>& voltage,
 struct Solved {
   const char* name;
   double voltage,
-      power;  ///< tolerances: mismatch of the file's reference solution
+      power;  ///< tolerances [pu], from the mismatch of the file's solution
 };
 class PowerFlowNetworks : public ::testing::TestWithParam<Solved> {};
 TEST_P(PowerFlowNetworks, ReproducesTheReferenceSolution) {
@@ -51,8 +51,9 @@ TEST_P(PowerFlowNetworks, ReproducesTheReferenceSolution) {
     EXPECT_NEAR(flow.generation[i].imag(), n.generators[i].q, GetParam().power) << i;
   }
 }
-// ANDES stopped at a mismatch of 2.7e-5 pu (39 bus) and 4e-7 pu (14 bus), which the next test measures; V
-// moves by that times a driving impedance of about 0.02 pu, P and Q by a share of it.
+// ANDES stopped at a mismatch of 2.7e-5 pu (39 bus) and 4e-7 pu (14 bus), which the next test measures. The
+// error of V is this mismatch times a driving-point impedance of about 0.02 pu; the errors of P and Q are
+// fractions of the mismatch.
 INSTANTIATE_TEST_SUITE_P(Committed, PowerFlowNetworks,
                          ::testing::Values(Solved{"ieee39_gencls", 1e-6, 1e-5},
                                            Solved{"ieee39_dataset_genrou", 1e-6, 1e-5},

@@ -8,8 +8,8 @@ namespace {
 
 /// Tolerance per channel [rad, pu, pu on 100 MVA, pu on 100 MVA, pu, rad, pu]. ANDES's own error is up to
 /// 3e-6 rad and 3e-5 pu. The limits of delta, P, Q and V are required. The others follow: speed is the
-/// derivative of an angle accurate to 1e-4 rad at swings of 10 rad/s over 377 rad/s; theta as delta; Ifd as
-/// Q.
+/// derivative of an angle accurate to 1e-4 rad at swings of 10 rad/s, divided by 377 rad/s. theta has the
+/// limit of delta, and Ifd that of Q.
 struct Limit {
   const char* name;
   Channel channel;

@@ -92,7 +92,8 @@ TEST(Events, InitialFrequencyDeclineFollowsTheAggregateSwingEquation) {
     const Trajectory hard = compared(grid, event, 1.5);
     const int at = static_cast<int>(std::lround(1.0 * hard.rate)),
               later = at + static_cast<int>(hard.rate / 10);
-    // With constant-power loads only the line losses change: 4, 0.2 and 3 MW of 250 to 540.
+    // With constant-power loads only the line losses change: by 4, 0.2 and 3 MW, for lost powers of 250 to
+    // 540 MW.
     EXPECT_NEAR(mean_acceleration(grid, hard, index, at, later) / expected, 1.0, 0.02) << name;
     // Constant-impedance loads fall with the voltage: the frequency declines more slowly.
     const double gentle = mean_acceleration(grid, soft, index, at, later) / expected;

@@ -50,11 +50,11 @@ std::string beside(const std::string& name) {
 
 struct Column {
   Channel channel;
-  std::string name;  ///< in their file
+  std::string name;  ///< in OpenIPSL's file
   double limit;      ///< relative to the swing; delta in degrees, V in pu
 };
 
-/// Both runs every 0.02 s, except at the switching times, for which a file has two samples.
+/// Compares both runs every 0.02 s, except at the switching times, for which the file has two samples.
 void expect_agreement(const std::string& name, const std::string& dynamics,
                       const std::vector<Column>& columns, const std::string& file = "modelica_results.csv") {
   const grid::Grid grid = grid_of(dynamics);
@@ -150,8 +150,8 @@ TEST(OpenipslRecords, HygovWithScrx) {
       // that (HygovCurveDiffersFromItsEquations).
       with(with(machine("gENSAL"), {Channel::Efd, "sCRX.EFD", 2e-3}), {Channel::Tm, "hYGOV.PMECH", 3e-3}));
 }
-/// Cubic interpolation of a curve through four samples, none from beyond a switching time, where a file has
-/// two samples.
+/// Cubic interpolation of a curve through four samples on one side of every switching time, for which the
+/// file has two samples.
 class Between {
  public:
   Between(std::vector<double> t, std::vector<double> y) : t_(std::move(t)), y_(std::move(y)) {}

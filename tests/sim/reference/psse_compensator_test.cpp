@@ -11,8 +11,8 @@
 namespace swingbank::sim::reference {
 namespace {
 
-/// The record's case has no unit at bus 3. The program that published it adds the compensator in its test 49,
-/// with 500 MVA and a capacitor of 60 Mvar; these values come from there.
+/// The record's case has no unit at bus 3. The program that published the record adds the compensator in its
+/// test 49, with 500 MVA and a capacitor of 60 Mvar. The values here come from that test.
 grid::Grid with_compensator(const std::filesystem::path& folder) {
   const auto scratch = std::filesystem::temp_directory_path() / ("swingbank-svc-" + std::to_string(getpid()));
   std::filesystem::create_directories(scratch);

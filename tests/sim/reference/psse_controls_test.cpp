@@ -19,7 +19,8 @@ namespace {
 constexpr double kSwitching = 1.0, kStep = 0.005, kEnd = 20.0;  // [s]
 /// Required limits: V in pu, rotor angle in degrees, other channels relative to their swing.
 constexpr double kVoltage = 1e-4, kAngle = 0.01, kShare = 2e-3;
-constexpr int kInnerSteps = 10;  ///< of an exciter with several states in a row: psse_excitation_test.cpp
+/// Substeps of an exciter with several states in series (psse_excitation_test.cpp).
+constexpr int kInnerSteps = 10;
 
 std::filesystem::path folder_of(const std::string& name) {
   return test::record_folder("psse_powersimulationsdynamics/" + name);
@@ -178,10 +179,10 @@ TEST(PsseRecords, GastWithEsac1a) {
                    });
 }
 
-// PowerWorld's curves, not PSS/E's, hence exact integration. The governor makes an undamped swing grow:
-// Swingbank's grows faster, by 9.4 % at 5 s (with the delay 2.2 %: its polynomials are exact to s TD = 3j,
-// and 6.5j occurs). 5.1 % are due to a droop in the curves (DegovCurvesContainADroop), the rest to PSS/E's
-// classical machine, (Pm - D w - Pe)/(1 + w).
+// These curves are PowerWorld's, not PSS/E's, hence exact integration. The governor makes an undamped swing
+// grow. Swingbank's swing is 9.4 % larger at 5 s. With the delay it is 2.2 % larger: the polynomials of the
+// delay are exact to s TD = 3j, and 6.5j occurs. Of the difference, 5.1 % are due to a droop in the curves
+// (DegovCurvesContainADroop), the rest to PSS/E's classical machine, (Pm - D w - Pe)/(1 + w).
 TEST(PsseRecords, DegovWithAndWithoutDelay) {
   constexpr double kRate = 240.0, kDegovEnd = 5.0;
   for (const std::string delay : {"nodelay", "delay"}) {
@@ -207,9 +208,9 @@ TEST(PsseRecords, DegovWithAndWithoutDelay) {
   }
 }
 
-/// Speed of the machine 102 of DEGOV's case, a sample every 1/240 s: a classical machine as PowerWorld
-/// integrates it, 2H dw/dt = (Pm - D w)/(1 + w) - Te with Pm = (1 + w) exp(-s delay) throttle, the network
-/// solved in closed form, with Swingbank's DEGOV1 and this droop.
+/// Speed of machine 102 in DEGOV's case, one sample every 1/240 s. A classical machine as PowerWorld
+/// integrates it: 2H dw/dt = (Pm - D w)/(1 + w) - Te with Pm = (1 + w) exp(-s delay) throttle. The network is
+/// solved in closed form; the governor is Swingbank's DEGOV1 with this droop.
 std::vector<double> speed_of_diesel(const grid::Grid& grid, double droop, double delay) {
   using C = std::complex<double>;
   constexpr int kSteps = 10, kSamples = 1201;
@@ -263,9 +264,9 @@ std::vector<double> speed_of_diesel(const grid::Grid& grid, double droop, double
   return speeds;
 }
 
-// Inferred, not documented: with a droop of 0.0565 pu of the throttle, fitted to the first curve, the
-// differences fall from 5.1 and 3.3 % of the swing to 0.04 % in both (the delay is this test's, exact). DEGOV
-// has no such parameter; the model or setting of PowerWorld behind the curves is unknown.
+// Inferred, not documented: a droop of 0.0565 pu of the throttle, fitted to the first curve, reduces the
+// differences from 5.1 and 3.3 % of the swing to 0.04 % in both curves. This test computes the delay exactly.
+// DEGOV has no such parameter; the model or setting of PowerWorld behind the curves is unknown.
 TEST(PsseRecords, DegovCurvesContainADroop) {
   for (const auto& [name, delay, without] :
        {std::tuple{"nodelay", 0.0, 0.04}, std::tuple{"delay", 1.0, 0.03}}) {

@@ -24,7 +24,8 @@ constexpr double kEndOfRecord = 4.0;     ///< [s]
 std::filesystem::path dera_folder() { return test::record_folder("psse_powersimulationsdynamics") / "DERA"; }
 
 /// The record's folder lacks DERA1's parameters. They are from test 42 of the publishing project; fl to tfh
-/// are not published, so no frequency trips here. `freq_flag`: PSS/E's two records agree to the last digit.
+/// are not published, so no frequency trips here. PSS/E's records for the two values of `freq_flag` agree to
+/// the last digit.
 grid::Grid distributed_grid(int freq_flag) {
   const auto dyr = std::filesystem::temp_directory_path() / (std::to_string(::getpid()) + "_dera.dyr");
   std::ofstream(dyr) << "101 'GENCLS' 1 0.0 0.0 /\n"
@@ -50,9 +51,9 @@ struct Apart {
 
 class PsseRecordsDistributed : public testing::TestWithParam<int> {};
 
-// Measured, with exact integration: 1.8e-5 pu and 0.0057 degrees while the currents settle (0.34 and 0.21 %
-// of swings of 0.0053 pu and 2.72 degrees), 1.2e-6 pu and 3.4e-4 degrees from 2.15 s on. In PSS/E's own steps
-// and with its network 1.1e-6 pu and 3.4e-4 degrees throughout (0.02 and 0.01 %).
+// Measured differences with exact integration: 1.8e-5 pu and 0.0057 degrees while the currents settle (0.34
+// and 0.21 % of swings of 0.0053 pu and 2.72 degrees), then 1.2e-6 pu and 3.4e-4 degrees from 2.15 s on. With
+// PSS/E's own steps and network solution they are 1.1e-6 pu and 3.4e-4 degrees throughout (0.02 and 0.01 %).
 TEST_P(PsseRecordsDistributed, VoltageAndAngle) {
   const grid::Grid grid = distributed_grid(GetParam());
   const auto record =

@@ -40,8 +40,8 @@ using Rows = std::vector<std::vector<double>>;
 /// Substeps of PSS/E's EXST1 and ESAC1A within each simulation step, inferred from the records: Efd responds
 /// to the trip within one step, through three and four states in series. With ten substeps and the recorded
 /// voltage, Swingbank's EXST1 follows the recorded Efd to 3e-6 pu, the last printed digit, over the first 80
-/// ms; with eight, nine or exact integration to 3e-4, 1e-4 and 6e-4. SEXS, which has no transducer, uses the
-/// simulation steps.
+/// ms; with eight substeps, nine substeps and exact integration, to 3e-4, 1e-4 and 6e-4 pu. SEXS, which has
+/// no transducer, uses the simulation steps.
 constexpr int kInnerSteps = 10;
 
 /// One row per row of the record, computed by `see(signals, x, v)` at each step.
@@ -56,7 +56,7 @@ Rows rows_of(const grid::Grid& grid, const See& see, int exciter_steps = 1) {
       exciter_steps);
   return rows;
 }
-/// Largest difference to each column of the record (after time) over that column's swing.
+/// Largest difference to each column of the record (after the time column), divided by that column's swing.
 void expect_agreement(const test::Table& record, const Rows& ours, const std::vector<std::string>& names,
                       const std::vector<double>& limits) {
   ASSERT_EQ(record.rows.size(), ours.size());
@@ -105,8 +105,8 @@ TEST(PsseRecords, Tgov1WithEsac1a) {
                    {kExcitationLimit, kExcitationLimit});
 }
 
-// GENSAL, EXST1 and HYGOV behind a transformer, line 1-4 circuit 1 opens; bus 1 is behind its ZSORCE.
-// Measured: V1 0.034 %, V2 to V4 0.015 to 0.020 %, speed 0.032 %, Efd 0.020 %.
+// GENSAL, EXST1 and HYGOV behind a transformer; circuit 1 of line 1-4 opens. The source at bus 1 is behind
+// its ZSORCE. Measured: V1 0.034 %, V2 to V4 0.015 to 0.020 %, speed 0.032 %, Efd 0.020 %.
 TEST(PsseRecords, Exst1WithGensalAndHygov) {
   const auto folder = test::psse_folder("EXST1");
   const grid::Grid grid =

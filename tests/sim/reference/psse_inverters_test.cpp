@@ -49,14 +49,14 @@ ReferenceRun exact(const grid::Grid& grid, const network::Event& event, double u
   return run_reference(grid, event, options);
 }
 
-/// PSS/E's printed P and Q of a converter approach their values after a switching by half of the difference
-/// at each step if Accel is 0 (immediately if it is 0.7, below); the voltage is correct immediately. `k`
-/// counts the steps.
+/// After a switching, each step halves the error of the P and Q that PSS/E prints for a converter if Accel is
+/// 0. If Accel is 0.7 (below), they are correct immediately, and so is the voltage in both cases. `k` counts
+/// the steps.
 double half_way(double power_step, long k) { return power_step * std::ldexp(1.0, static_cast<int>(-k - 1)); }
 
 struct PowerRecord {
   std::string dyr, csv;
-  double of_swing;  ///< of P, stepped as PSS/E steps
+  double of_swing;  ///< limit for P with PSS/E's steps, relative to the swing
 };
 class PsseRecordsConverter : public testing::TestWithParam<PowerRecord> {};
 
@@ -96,7 +96,7 @@ TEST_P(PsseRecordsConverter, PowerAndVoltage) {
     at_once.see(row, ours);
   }
   std::size_t next = 0;
-  long after = -1;  // solutions since the switching; the first of two rows there is before it
+  long after = -1;  // solutions since the switching; the record's first row at this time precedes it
   test::step_as_psse(
       grid, event, plant_at(grid, "103"), kRecordStep, 5.0,
       [&](double t, const Signals<double>& s, const double*) {
@@ -112,7 +112,7 @@ TEST_P(PsseRecordsConverter, PowerAndVoltage) {
   EXPECT_LT(at_once.worst[2], kVoltageLimit);
   EXPECT_LT(at_once.of_swing(0), 0.05);
   EXPECT_LT(at_once.of_swing(1), 0.05);
-  // With FrqFlag the plant control measures this half-updated power: 2.8e-5 pu remain.
+  // With FrqFlag the plant control measures this half-updated power: a difference of 2.8e-5 pu remains.
   EXPECT_LT(stepped.of_swing(0), GetParam().of_swing);
   EXPECT_LT(stepped.of_swing(1), kSwingLimit);
   EXPECT_LT(stepped.worst[2], kVoltageLimit / 10);
@@ -145,8 +145,8 @@ struct Largest {
 };
 
 // The plant regulates its voltage with a gain of 25 within 0.1 s: PSS/E's step of 5 ms alone causes 3e-4 pu.
-// Measured with exact integration: angle 0.0056 and 0.0043 degrees, V 2.9e-4 and 3.1e-4 pu; stepped as PSS/E
-// steps, with its network: V 3.4e-7 and 2.0e-6 pu.
+// Measured with exact integration: angle 0.0056 and 0.0043 degrees, V 2.9e-4 and 3.1e-4 pu. Measured with
+// PSS/E's steps and network solution: V 3.4e-7 and 2.0e-6 pu.
 TEST_P(PsseRecordsRegulated, AngleAndVoltage) {
   const grid::Grid grid = converter_grid_of(GetParam().dyr);
   const auto record = test::read_table(rena() / GetParam().csv, true);
@@ -209,7 +209,7 @@ struct UnitsRecord {
   network::Event (*event)(const grid::Grid&);
   double until;                     ///< [s]
   double angle, voltage, reactive;  ///< largest differences [degrees, pu, of Q's swing]
-  double of_swing;                  ///< of P, Q and field current in PSS/E's steps
+  double of_swing;                  ///< limit for P, Q and field current with PSS/E's steps
 };
 /// Largest difference to one column of a record, and the column's swing.
 struct Swing {
@@ -220,20 +220,20 @@ struct Swing {
     high = std::max(high, theirs);
   }
   [[nodiscard]] double swing() const { return high - low; }
-  /// The last of the six that are printed.
+  /// Value of the last of the six printed digits.
   [[nodiscard]] double digit() const {
     return std::pow(10.0, std::floor(std::log10(std::max(std::abs(low), std::abs(high)))) - 5.0);
   }
 };
 constexpr std::size_t kColumns[] = {1, 2, 4};  ///< of P, Q and field current
 constexpr const char* kChannels[] = {"P", "Q", "field current"};
-constexpr double kSixDigits = 1e3;          ///< from there on an angle is printed to 0.01 [degrees]
+constexpr double kSixDigits = 1e3;          ///< [degrees]; above it, angles are printed to 0.01
 constexpr double kNetworkTolerance = 1e-3;  ///< of PSS/E's run [pu], inferred from the generator trip
 class PsseRecordsManyUnits : public testing::TestWithParam<UnitsRecord> {};
 
-// Measured: V 5.9e-5 pu (line) and 1.2e-4 pu (generator), angles against unit 1 0.07 and 0.18 degrees. Of
-// their swing P is off by 4.8 and 4.7 %, Q by 9.3 and 0.7 %, field current by 12 and 3.2 %: PSS/E's steps
-// and its network, below.
+// Measured: V 5.9e-5 pu (line) and 1.2e-4 pu (generator), angles against unit 1 0.07 and 0.18 degrees.
+// Relative to their swings, P is off by 4.8 and 4.7 %, Q by 9.3 and 0.7 %, field current by 12 and 3.2 %. The
+// causes are PSS/E's steps and network solution (see the next test).
 TEST_P(PsseRecordsManyUnits, WithExactIntegration) {
   const grid::Grid grid = many_units();
   const auto record = unpacked(GetParam().csv);
@@ -298,13 +298,13 @@ TEST_P(PsseRecordsManyUnits, WithExactIntegration) {
   EXPECT_LT(worst_voltage, GetParam().voltage);
   EXPECT_LT(worst[1], GetParam().reactive);
 }
-// In PSS/E's own steps, with its network and its single precision: V is off by 5.2e-6 (line) and 7.3e-6 pu
-// (generator), angles by 1.7e-4 and 1.6e-3 degrees. Of their swings P is off by 0.07 and 0.27 %, Q by 0.11
-// and 0.04 %, field current by 0.22 and 0.013 %, or by less than two of the last printed digit: the
-// converters' P and Q, all P of 1e-5 pu, and unit 1's field current, which is printed to 1e-4 pu and swings
-// by 0.0023 pu. With double precision the line's Q is off by 0.5 % after 20 s, with the network solved to the
-// end P by 4.7 %. The error of the generator's P is largest late, at angles of thousands of degrees in single
-// precision.
+// With PSS/E's own steps, network solution and single precision, V is off by 5.2e-6 (line) and 7.3e-6 pu
+// (generator), angles by 1.7e-4 and 1.6e-3 degrees. Relative to their swings, P is off by 0.07 and 0.27 %, Q
+// by 0.11 and 0.04 %, field current by 0.22 and 0.013 %. Errors below two units of the last printed digit are
+// not counted. These are those of the converters' P and Q, of every P of 1e-5 pu, and of unit 1's field
+// current, which is printed to 1e-4 pu and swings by 0.0023 pu. With double precision, Q (line) is off by 0.5
+// % after 20 s. With the network solved to convergence, P is off by 4.7 %. The error of P (generator) is
+// largest at the end, where angles of thousands of degrees are stored in single precision.
 TEST_P(PsseRecordsManyUnits, InPssesSteps) {
   const grid::Grid grid = many_units();
   const auto record = unpacked(GetParam().csv);

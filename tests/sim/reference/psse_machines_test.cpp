@@ -71,7 +71,7 @@ TEST(PsseRecords, DampedClassicalMachine) {
   EXPECT_LT(worst, 0.0001);
 }
 
-// Torque instead of power is off by 0.0005 degrees: little, because speed divides both sides alike.
+// With torque instead of power the error is only 0.0005 degrees, because the speed divides both sides alike.
 TEST(PsseRecords, ClassicalMachineDistinguishesTorqueFromPower) {
   EXPECT_GT(largest_error(kTest01, Conventions::andes()), 0.0004);
 }
@@ -105,9 +105,9 @@ TEST(PsseRecords, ClassicalMachineErrorIsDueToPssesStep) {
 class PsseRecordsMachines : public testing::TestWithParam<Record> {};
 const std::string kMore = "psse_powersimulationsdynamics/";
 
-// Until 10 s: later the records of GENSAL and GENSAE settle 0.001 degrees earlier than Swingbank. Measured:
-// 0.0001 to 0.0002 degrees, the records' last digit being 0.0001; with speed voltage 0.0009 (GENSAL) to
-// 0.009, with torque 0.016 to 0.048.
+// Compared until 10 s, because the records of GENSAL and GENSAE later settle 0.001 degrees from Swingbank's
+// angle. Measured: 0.0001 to 0.0002 degrees, the records' last digit being 0.0001. With speed voltage it is
+// 0.0009 (GENSAL) to 0.009 degrees, with torque 0.016 to 0.048 degrees.
 TEST_P(PsseRecordsMachines, PowerWithoutSpeedVoltage) {
   constexpr double kUntil = 10.0, kLimit = 0.00025;
   const double worst = largest_error(GetParam(), Conventions::psse(), kUntil);

@@ -2,8 +2,9 @@
 // PSS/E's network solution, as inferred from its records. Converters and loads other than admittances are
 // current injections, a converter's in parallel with its source impedance (ZSORCE of the .raw). These
 // currents, with the part of the source impedance, use the voltage of the previous solution; the remaining
-// network is linear. Solutions are repeated until no voltage changes by more than the run's tolerance.
-// Between steps it mostly changes by less, so a converter's source lags by one step.
+// network is linear. Solutions are repeated until no voltage changes by more than the run's tolerance. From
+// one step to the next, voltages mostly change by less than this tolerance, so a converter's source lags by
+// one step.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

@@ -35,7 +35,7 @@ double largest_angle_error(const std::string& dyr, const std::string& record, Co
 }
 
 /// Required: 0.02 degrees. Measured: 0.0038 and 0.0040, due to PSS/E's step of 5 ms (0.0002 with its own
-/// integration, decision 07); the former convention, with speed voltage, is off by 0.009.
+/// integration, decision 07). With speed voltage, the former convention, the error is 0.009.
 constexpr double kAngleLimit = 0.006;
 
 TEST(PsseRecords, SaturatedGenrou) {

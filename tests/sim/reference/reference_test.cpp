@@ -188,7 +188,8 @@ TEST(Reference, ReclosingRestoresTheOperatingPoint) {
   ASSERT_EQ(reclosed.outcome, Outcome::stable);
   const int last = reclosed.samples - 1;
   for (int c = 0; c < kChannelCount; ++c)
-    // rest of a swing of 0.1 rad damped for 58 s, and a field transient with T'do' of some seconds
+    // remainder of a swing of 0.1 rad after 58 s of damping, and of a field transient with T'do of some
+    // seconds
     EXPECT_NEAR(reclosed.at(1, c)[last], reclosed.at(1, c)[0], 2e-4) << kChannels[c].name;
   EXPECT_GT(std::abs(open.at(1, 0)[last] - open.at(1, 0)[0]), 1e-2)
       << "an open line moves the operating point";
