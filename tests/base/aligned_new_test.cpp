@@ -9,7 +9,7 @@
 namespace swingbank {
 namespace {
 
-// builds with clang use sanitizers, which have their own allocators
+// excluded: builds with sanitizers (all clang builds), because sanitizers have their own allocators
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 TEST(Memory, IsAlignedToCacheLines) {
   constexpr std::uintptr_t kLine = 64;

@@ -15,7 +15,7 @@ TEST(KeyDescription, HasTypesRangesDefaultsAndMeanings) {
   const Json s = described([](Config& c) {
     c.require<double>("t.start", {0.5, 2.0, "s", "start"});
     c.optional<std::int64_t>("n", 3, {1, 10});
-    c.optional<double>("base", 0.0, {1e-9, 1e9});  // 0 means that it is missing, and is not allowed
+    c.optional<double>("base", 0.0, {1e-9, 1e9});  // the default 0 means "missing"; the file must not set it
     c.require<std::vector<std::string>>("words");
     c.interval("box", {0.0, 1.0});
     c.choice("kind", {"a", "b"}, "b");
@@ -46,7 +46,7 @@ TEST(KeyDescription, ExploresPresence) {
   });
   EXPECT_FALSE(s.contains("required"));
   EXPECT_EQ(s["properties"]["table"]["required"], Json::parse(R"(["value"])"));
-  // With the preset a limit is unknown, without it required.
+  // If the preset is given, `limit` is an unknown key; otherwise it is required.
   EXPECT_EQ(s["allOf"], Json::parse(R"([
     {"if": {"required": ["preset"]}, "then": {"properties": {"limit": false}}},
     {"if": {"not": {"required": ["preset"]}}, "then": {"required": ["limit"]}}])"));

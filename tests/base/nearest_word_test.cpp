@@ -20,7 +20,7 @@ TEST(NearestWord, AcceptsPrefixesInAnyCase) {
 }
 TEST(NearestWord, ReturnsNothing_WhenNoWordIsNear) {
   EXPECT_EQ(nearest_word("nonesuch", kEffects), "");
-  EXPECT_EQ(nearest_word("D", {"H", "Xd"}), "");  // half of the word differs: no typing error
+  EXPECT_EQ(nearest_word("D", {"H", "Xd"}), "");  // half of the word differs, so it is not a typing error
   EXPECT_EQ(suggestion("nonesuch", kEffects, "see the list"), "see the list");
   EXPECT_EQ(suggestion("GENRUO", kEffects, "see the list"), "did you mean GENROU?");
 }

@@ -1,5 +1,5 @@
-// blind-second: blind cases of the second simulator (one machine against a Thevenin grid), in the folders
-// that `swingbank blind-test --judge --score` reads.
+// blind-second: writes blind cases of the independent simulator (one machine against a Thevenin grid) into
+// the folders that `swingbank blind-test --judge --score` reads.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

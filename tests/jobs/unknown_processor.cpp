@@ -17,7 +17,7 @@ bool allow_cpuid(bool allowed) { return syscall(SYS_arch_prctl, ARCH_SET_CPUID, 
 void emulate_cpuid(int signal_number, siginfo_t*, void* context) {
   greg_t* registers = static_cast<ucontext_t*>(context)->uc_mcontext.gregs;
   const auto* code = reinterpret_cast<const unsigned char*>(registers[REG_RIP]);
-  if (code[0] != 0x0f || code[1] != 0xa2) {  // not CPUID: a fault of the program's own
+  if (code[0] != 0x0f || code[1] != 0xa2) {  // not CPUID: the program itself caused the fault
     signal(signal_number, SIG_DFL);
     return;
   }

@@ -18,7 +18,7 @@ TEST(ItemQueue, ReturnsCompleteResults) {
   SharedItems shared;
   shared.items.resize(50);
   std::iota(shared.items.begin(), shared.items.end(), 0);
-  std::map<std::size_t, std::string> results;  // used by the caller only: needs no lock
+  std::map<std::size_t, std::string> results;  // used only by the caller, so it needs no lock
   shared.work = [](std::size_t item) { return std::string(2000, static_cast<char>('a' + item % 26)); };
   shared.done = [&](std::size_t item, const std::string& result) { results[item] = result; };
   EXPECT_TRUE(OneProcess().share_items(shared));

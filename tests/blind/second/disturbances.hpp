@@ -37,7 +37,7 @@ inline UnlistedDisturbance limit_cycle(double A, double hz, double growth) {
   d.field = [=](double, double Efd, const UnlistedDisturbance::Memory& m) { return Efd + A * m[0]; };
   return d;
 }
-/// Friction that doubles when the speed deviation is small.
+/// Stick-slip friction: it doubles when the speed deviation is small.
 inline UnlistedDisturbance stick_slip(double A, double loose) {
   UnlistedDisturbance d;
   d.torque = [=](double, double, double w, const UnlistedDisturbance::Memory&) {
@@ -46,7 +46,7 @@ inline UnlistedDisturbance stick_slip(double A, double loose) {
   };
   return d;
 }
-/// Normal increments, linear between knots at distance `step`.
+/// Random walk with normal increments, linear between knots that are `step` [s] apart.
 inline UnlistedDisturbance random_walk(double A, double step, double start, double until, unsigned seed) {
   UnlistedDisturbance d;
   std::mt19937 engine(seed);

@@ -1,8 +1,8 @@
 #pragma once
 // A round-rotor machine after P. W. Sauer and M. A. Pai, Power System Dynamics and Stability (1998), section
-// 3.6 (two-axis model with one damper per axis). Saturation is that of PSS/E's GENROU: on both axes, by the
-// subtransient flux. Per unit on the machine's base. The stator voltage does not depend on speed; the prime
-// mover sets power.
+// 3.6 (two-axis model with one damper per axis). Saturation is that of PSS/E's GENROU: it acts on both axes
+// and depends on the subtransient flux. Per unit on the machine's base. The stator voltage does not depend on
+// speed. The prime mover sets the power, not the torque.
 #include <cmath>
 #include <complex>
 

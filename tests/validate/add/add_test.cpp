@@ -81,8 +81,8 @@ TEST(AddFull, VerdictOmitsManyValues) {
                     testing::Not(HasSubstr("KA = "))));
 }
 
-// If the noise transfer is computed without the exciter, TA/TB lies outside its interval. All of seventeen 95
-// % intervals contain the truth in 42 % of such records, all but one in 79 %.
+// If the noise transfer is computed without the exciter, TA/TB lies outside its interval. All seventeen 95 %
+// intervals contain the truth in 42 % of such records; all but at most one in 79 %.
 TEST(Add, IntervalsContainTheTruth) {
   const plant::PlantModel model = example(false), truth = example(true);
   AddOptions options = power_only();
@@ -160,7 +160,7 @@ TEST(Add, NamesAnEffectThatWasRemoved) {
   const plant::PlantModel model = example(true);
   const Removal r = try_without(model, 0, records(model), power_only());
   EXPECT_EQ(r.effect, "SEXS");
-  EXPECT_GT(r.evidence, 1000);  // without it the error of Q is fifty times its noise
+  EXPECT_GT(r.evidence, 1000);  // without SEXS the error of Q is fifty times its noise
   EXPECT_TRUE(r.model.plant.controls.empty());
 }
 

@@ -85,8 +85,8 @@ TEST_F(BenchmarkTest, ErrorsAreThoseOfTheSamplesInEachWindow) {
   const TestResult& r = results.front();
   const auto& e = r.event;
   const double to_mva = 100 * e.record.base.mva / model_.plant.mva;
-  // Before the event, between its ends without the first 20 ms, and after it from 1.21 s on (60 ms are left
-  // out).
+  // Before the fault, during it without its first 20 ms, and after it from 1.21 s on, without the first 60
+  // ms.
   const std::pair<double, double> windows[] = {{0.5, 1.0}, {1.02, 1.15}, {1.21, 4.0}};
   for (std::size_t c = 0; c < 2; ++c)
     for (std::size_t w = 0; w < 3; ++w) {
@@ -158,7 +158,7 @@ post = [1.0, 20.0]
   const auto results = run(governed, &governed);
   const auto& P = results.front().event.channels.front().modelled;  // pu on the record's base
   const int droop = governed.plant.controls.back().effect->parameter_index("R");
-  // At a fixed frequency the power changes by size / R of the governor's reference.
+  // At a fixed frequency, a step of the governor's reference changes the power by step / R.
   const double R = governed.plant.controls.back().p[static_cast<std::size_t>(droop)];
   EXPECT_GT(P.back() - P.front(), 0.01);
   EXPECT_LT((P.back() - P.front()) * records_.front().base.mva / governed.plant.mva, 0.1 / R + 1e-3);

@@ -115,7 +115,7 @@ TEST(GridResponse, BenchmarkComparesVoltageAndPowers) {
     EXPECT_EQ(r.event.channels.back().name, "V");
     EXPECT_GT(r.rows.back().errors.mxe, 0.1) << r.test.name;  // V after the event [% of 1 pu]
   }
-  // Another rating of the same machine is the same plant in the same grid.
+  // Parameters of the same machine on another MVA base describe the same plant in the same grid.
   plant::PlantModel rated = reference;
   const double factor = 2;
   rated.plant.mva *= factor;

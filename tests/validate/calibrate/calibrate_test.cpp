@@ -109,7 +109,7 @@ std::vector<double> bounds_of(const sim::plant::Plant& truth, const Calibration&
 
 TEST(Calibrate, FindsTheTruthAndExplainsTheUnseenEvent) {
   plant::PlantModel model = example();
-  model.plant.controls.push_back(sexs(0.12, 85, 8.5, 0.06));  // within 20 %, the prior of --prior-sd
+  model.plant.controls.push_back(sexs(0.12, 85, 8.5, 0.06));  // within 20 %, the default --prior-sd
   CalibrateOptions options;
   options.draws = 2;
   options.starts = 1;
@@ -125,18 +125,20 @@ TEST(Calibrate, FindsTheTruthAndExplainsTheUnseenEvent) {
   const std::vector<double> bound = bounds_of(right.plant, c, {true, true, true, false});
   for (const auto& [name, value] : truth) {
     const auto& p = parameter(c, name).fit;
-    // Three standard errors, plus the bias of a time constant of 0.05 s by the other simulator (trapezoidal
-    // rule, 1/240 s) and by splines through 60 samples/s.
+    // Three standard errors, plus the bias of a time constant of 0.05 s that the other simulator (trapezoidal
+    // rule, 1/240 s) and splines through 60 samples/s cause.
     EXPECT_NEAR(p.value, value, 3 * p.error + 3e-3 * value) << name;
     const auto at = &parameter(c, name) - c.parameters.data();
-    // The bound omits the noise of V. It reaches Efd through K TA/TB and is as large as the noise of Efd.
+    // The bound omits the noise of V. This noise reaches Efd through the gain K TA/TB and is there as large
+    // as the noise of Efd.
     EXPECT_LT(p.error, 2.6 * bound[static_cast<std::size_t>(at)]) << name;
     EXPECT_GT(p.error, 0.6 * bound[static_cast<std::size_t>(at)]) << name;
   }
   ASSERT_EQ(c.events.size(), 4U);
   EXPECT_FALSE(c.events[3].seen);
   EXPECT_TRUE(c.events[3].adequate());
-  // The error of Efd and Ifd is 7 times their noise, but slow; after whitening chi2 per value is 3.7.
+  // The errors of Efd and Ifd are 7 times their noise. They are slow, so chi2 per value is only 3.7 after
+  // whitening.
   EXPECT_GT(c.events[3].before, 3 * c.events[3].after);
   EXPECT_LT(parameter(c, "EMIN").fit.decided, 0.1);  // Efd never reaches it
   EXPECT_TRUE(std::ranges::any_of(c.unidentified, [&](const UnidentifiedCombination& b) {
@@ -221,7 +223,8 @@ TEST(Calibrate, KeepsFixedParameters) {
   }
 }
 
-// Some public cases have machines with X''d below Xl; their intervals must contain the truth as well.
+// Some public cases have machines with X''d below Xl. The intervals of their parameters must contain the
+// truth as well.
 TEST(Calibrate, CorrectsForVoltageNoiseWithXdppBelowXl) {
   const Simulation s = simulate_three(true, 0.38);
   plant::PlantModel model;
@@ -266,7 +269,8 @@ TEST(Calibrate, StandardErrors_EqualTheCramerRaoBound) {
 /// Coverage of the 95 % intervals over noisy copies of the same events.
 struct Coverage {
   int tries = 0, covered = 0, covered_white = 0, adequate = 0, copies = 0;
-  int decided = 0, half = 0;  ///< values that the records determine; of these within 0.6745 standard errors
+  int decided = 0, half = 0;  ///< `decided`: values that the records determine; `half`: those within 0.6745
+                              ///< standard errors of the truth
   std::vector<std::pair<std::string, int>> by_parameter;
   [[nodiscard]] double share() const { return static_cast<double>(covered) / tries; }
   [[nodiscard]] double half_share() const { return static_cast<double>(half) / decided; }
@@ -315,11 +319,11 @@ Coverage coverage(double power, double voltage, int copies) {
   return sum;
 }
 
-// 20 copies x 18 parameters: if 95 % are right, the share is 0.95 +- 0.02 even with strongly correlated
-// parameters; below 0.90 the intervals are too narrow. The models are 10 % off at a prior of 20 %, so values
-// determined by the priors are always inside. The others lie in the middle half of their intervals in 50 % of
-// cases (+- 7 % with some 50 independent values): errors three times too wide give 96 %, three times too
-// narrow 18 %.
+// 20 copies x 18 parameters: if 95 % of the intervals contain the truth, the fraction is 0.95 +- 0.02, even
+// with strongly correlated parameters. Below 0.90 the intervals are too narrow. The models are 10 % off at a
+// prior of 20 %, so intervals determined by the priors always contain the truth. In the other intervals the
+// truth lies in the middle half in 50 % of cases (+- 7 % with some 50 independent values). Standard errors
+// three times too large give 96 %, three times too small 18 %.
 void expect_two_sided(const Coverage& c, double most_within_half = 0.70) {
   EXPECT_GE(c.share(), 0.90);
   EXPECT_GE(c.decided, 60);
@@ -328,8 +332,8 @@ void expect_two_sided(const Coverage& c, double most_within_half = 0.70) {
   EXPECT_GE(c.adequate, 19);  // the limit is one in a thousand per event
 }
 TEST(CalibrateFull, IntervalsContainTheTruthUnderUsualNoise) { expect_two_sided(coverage(2e-3, 2e-4, 20)); }
-// Here the intervals are too wide: 113 of 158 values (72 %) lie in the middle half, as if the errors were 1.6
-// times the right ones. Without widening, 96.9 % of the intervals contain the truth.
+// Here the intervals are too wide: 113 of 158 values (72 %) lie in the middle half, as if the standard errors
+// were 1.6 times the right ones. Without widening, 96.9 % of the intervals contain the truth.
 TEST(CalibrateFull, IntervalsContainTheTruth_WhenTheVoltageIsAsNoisyAsThePower) {
   expect_two_sided(coverage(2e-3, 2e-3, 20), 0.80);
 }
@@ -341,7 +345,7 @@ TEST(CalibrateFull, ResponseBandsContainTheTrueResponse) {
   const std::string held_out = "fault9.csv";
   CalibrateOptions options;
   options.held_out = {held_out};
-  double squares[2] = {}, inside[2] = {}, count[2] = {};  // fitted events; the held-out one
+  double squares[2] = {}, inside[2] = {}, count[2] = {};  // [0]: fitted events; [1]: the held-out event
   for (int copy = 0; copy < kCopies; ++copy) {
     plant::PlantModel model = wrong(s.plant);
     const auto records = noisy(s.records, 2e-3, 1e-5, 300 + static_cast<unsigned>(copy));

@@ -22,10 +22,10 @@ namespace {
 constexpr double kFineRate = 480;
 constexpr int kCopies = 34;  // of 18 parameters each: 612 intervals
 
-/// Instrument properties of one test condition.
+/// Instrument properties in one condition of the test.
 struct Condition {
-  double magnitude;  ///< noise of |V| and |I| [% of themselves]
-  double angle;      ///< noise of either angle [degrees]
+  double magnitude;  ///< noise of |V| [% of |V|] and |I| [% of |I|]
+  double angle;      ///< noise of the angles of V and I [degrees]
   int rate;          ///< records per second
 };
 
@@ -100,8 +100,8 @@ plant::PlantModel off_by_a_tenth(const plant::PlantModel& truth) {
   return model;
 }
 
-/// Every free parameter drawn from its prior, until the machine's values satisfy their orderings; the
-/// exciter's limits are right.
+/// Every free parameter drawn from its prior, repeated until the machine's values are in their physical order
+/// (X'd < Xd). The exciter's limits are right.
 plant::PlantModel off_as_believed(const plant::PlantModel& truth, unsigned seed) {
   std::mt19937_64 generator(seed);
   std::normal_distribution<double> normal;
@@ -118,7 +118,7 @@ plant::PlantModel off_as_believed(const plant::PlantModel& truth, unsigned seed)
   }
 }
 
-/// Options of the campaign, to save time: one start and no draws.
+/// Options of these many fits, to save time: one start and no further random starts.
 CalibrateOptions from_one_start() {
   CalibrateOptions options;
   options.draws = options.starts = 0;
@@ -127,7 +127,7 @@ CalibrateOptions from_one_start() {
 }
 
 TEST(CoverageFull, AcceptsRightModelWithNoiseOfTheAngle) {
-  // Before the noise is measured through the fit and whitened, chi2 per value of this copy is 1.54.
+  // Before the noise is measured with the fit and whitened, chi2 per value of this copy is 1.54.
   const Filtered events;
   const Calibration c =
       calibrate(off_by_a_tenth(events.truth), events.recorded({0.02, 0.1, 30}, 105), from_one_start());
@@ -170,7 +170,7 @@ TEST_P(CoverageNightly, IntervalsContainTheTruth) {
       for (const auto& e : c.events)
         fmt::print("  {}: {:.3f} per value, limit {:.3f}\n", e.record, e.after, e.limit);
   EXPECT_GE(tries, 500);
-  // 93 to 97 %, plus two standard deviations of a share of so many intervals.
+  // 93 to 97 %, plus two standard deviations of a fraction of so many intervals.
   const double share = static_cast<double>(covered) / tries, doubt = 2 * std::sqrt(0.95 * 0.05 / tries);
   EXPECT_GE(share, 0.93 - doubt);
   EXPECT_LE(share, 0.97 + doubt);

@@ -1,4 +1,5 @@
-// The baseline: right if its assumptions hold, otherwise less accurate than `calibrate`.
+// The baseline, a plain least-squares fit of curves: right if its assumptions hold, otherwise less accurate
+// than `calibrate`.
 #include "validate/calibrate/curve_fit.hpp"
 
 #include <fmt/format.h>
@@ -42,7 +43,7 @@ struct Scratch {
   ~Scratch() { std::filesystem::remove(file); }
 };
 
-// Switched half-way between samples, no noise: all assumptions of the baseline hold.
+// Without noise, and with switchings half-way between samples, all assumptions of the baseline hold.
 TEST(CurveFit, FindsTheTruth_WhenItsAssumptionsHold) {
   plant::PlantModel truth;
   std::vector<record::Record> records;
@@ -74,7 +75,7 @@ TEST(CurveFit, FindsTheTruth_WhenItsAssumptionsHold) {
   ASSERT_EQ(f.parameters.size(), 4U);
   for (const auto& p : f.parameters) {
     const double value = sim::plant::parameter_value(truth.plant, p.where.id);
-    EXPECT_NEAR(p.value, value, 0.01 * value) << p.name;  // 2e-4 pu of the 0.02 pu that 15 % cause
+    EXPECT_NEAR(p.value, value, 0.01 * value) << p.name;  // 1 %: 2e-4 of the 0.02 pu that 15 % cause
     EXPECT_LE(p.low, p.value);
     EXPECT_GE(p.high, p.value);
   }
@@ -96,7 +97,7 @@ TEST(CurveFit, IsLessAccurateThanCalibrateOnTheExample) {
   how.events.measured_states = false;
   how.draws = how.starts = 0;
   const Calibration c = calibrate(model, records, how);
-  EXPECT_FALSE(f.adequate);  // faults on a sample: half-way is 8 ms late
+  EXPECT_FALSE(f.adequate);  // the faults begin at a sample, so the assumed times, half-way, are 8 ms late
   EXPECT_LT(f.after, f.before);
   const Scratch file("truth.toml", plant::plant_text(truth, {}));
   const Truth known = read_truth(file.file, model);

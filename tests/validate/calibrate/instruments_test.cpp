@@ -43,7 +43,7 @@ TEST_P(SeenThrough, IntervalsContainTheTruth) {
   options.fixed = wrong.fixed;
   const Calibration c = calibrate(wrong.model, example.records, options);
   EXPECT_NE(c.adequacy, Adequacy::structure_poor) << c.sentence;
-  // The scores of the starts and the fits of the events agree but for the colour of the noise.
+  // The scores of the starts and of the fitted events agree, except for the colour of the noise.
   EXPECT_LT(std::abs(std::log(c.started.front().before / c.before)), std::log(1.5));
   std::vector<std::string> names, outside;
   std::vector<fit::FittedParameter> fitted;

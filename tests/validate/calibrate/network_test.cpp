@@ -106,9 +106,9 @@ TEST(NetworkStart, IsAStartAndIsReportedWithTheFit) {
   const Calibration c = calibrate(model, {example_record(model, 1)}, options);
   ASSERT_EQ(c.started.size(), 2U);
   EXPECT_EQ(c.started[1].name, "network");
-  EXPECT_GT(c.started[1].before, c.started[0].before);  // its H is 20 % off, the model's is right
+  EXPECT_GT(c.started[1].before, c.started[0].before);  // the network's H is 20 % off, the model's H is right
   EXPECT_LE(c.started[1].after, c.started[1].before);
-  EXPECT_TRUE(c.started[1].agrees);  // two determined parameters: there is one optimum
+  EXPECT_TRUE(c.started[1].agrees);  // the records determine both parameters, so there is one optimum
   const Way way = way_of(estimate, plant, c);
   ASSERT_EQ(way.values.size(), 2U);
   EXPECT_EQ(way.values[0].parameter, "GENROU.H");

@@ -7,7 +7,7 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-/// The example with an IEEET1 of which only KE is free; its prior is 1 +- 0.5.
+/// The example with an IEEET1. Only its parameter KE is free, with a prior of 1 +- 0.5.
 struct SelfExcitation {
   sim::plant::Plant believed = readme::example().plant;
   std::vector<fit::FreeParameter> free;

@@ -1,5 +1,5 @@
-// Allowance for parameter errors on an event outside the fit: its limit is exceeded once in a thousand, and
-// the verdict names an event that only the allowance accepts.
+// Allowance for parameter errors in the chi-square limit of an event outside the fit. The limit is exceeded
+// once in a thousand, and the verdict names an event that is accepted only because of the allowance.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 namespace swingbank::validate::calibrate {
 namespace {
 
-// Three parameters with very different errors move 200 values with noise of one. A normal distribution
-// exceeds 3.09 once in a thousand; a quadratic form of few squares has a longer tail.
+// Three parameters with very different errors change 200 values, whose noise is 1. A normal variable exceeds
+// 3.09 once in a thousand; a quadratic form of few squares does so more often.
 TEST(UnseenAllowance, IsExceededRarelyButNotNever) {
   constexpr int kValues = 200, kParameters = 3, kDraws = 20000;
   std::mt19937_64 generator(5);
@@ -31,7 +31,7 @@ TEST(UnseenAllowance, IsExceededRarelyButNotNever) {
     mean += added / kDraws;
     beyond += added > allowed;
   }
-  EXPECT_LT(beyond, kDraws / 50);  // of one square, 3.09 deviations leave 2.1 %: z^2 > 1 + 3.09 sqrt(2)
+  EXPECT_LT(beyond, kDraws / 50);  // for one square, 2.1 % lie beyond 3.09 deviations: z^2 > 1 + 3.09 sqrt(2)
   EXPECT_GT(beyond, 0);            // the limit is reachable
   EXPECT_GT(allowed, 2 * mean);
 }

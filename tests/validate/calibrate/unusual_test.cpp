@@ -1,4 +1,4 @@
-// A parameter outside its usual range is fitted from there, and beyond.
+// A parameter outside its usual range is fitted from its value, and may move further outside.
 #include <gtest/gtest.h>
 
 #include "tests/validate/calibrate/example.hpp"
@@ -58,7 +58,7 @@ TEST(CurveFitUnusual, MovesValueFurtherBeyondItsRange) {
   options.fixed = q.all_but_inertia();
   const CurveFit f = curve_fit(q.model, readme::example_records(q.model, 2), options);
   ASSERT_EQ(f.parameters.size(), 1U);
-  expect_found(f.parameters[0], q.H, 0.05);  // the baseline does not fit the switching times: 3.3 %
+  expect_found(f.parameters[0], q.H, 0.05);  // 3.3 %: the baseline fits no switching times
 }
 
 }  // namespace

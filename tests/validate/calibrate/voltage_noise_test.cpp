@@ -79,7 +79,7 @@ TEST(VoltagePull, MeanScoreMatchesPredictionForNoiseSharedWithPAndQ) {
   const Eigen::VectorXd carried = copies.expected(1), apart = copies.expected(0);
   for (Eigen::Index i = 0; i < 4; ++i)
     EXPECT_NEAR(carried[i], mean[i], 3.5 * error[i] + 0.03 * std::abs(mean[i])) << i << ", else " << apart[i];
-  EXPECT_GT(std::abs(apart[0] - mean[0]), 5 * error[0]);  // differs from noise of V alone
+  EXPECT_GT(std::abs(apart[0] - mean[0]), 5 * error[0]);  // the mean differs from that of noise on V alone
 }
 
 TEST(Secants, CorrectOvershootingSteps) {

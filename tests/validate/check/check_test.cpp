@@ -1,4 +1,5 @@
-// Sound records are modified by every known mistake and must be recognised; unmodified records pass.
+// Sound records are changed by every known mistake, and each mistake must be recognised. Unchanged records
+// pass.
 #include "validate/check/check.hpp"
 
 #include <fmt/format.h>
@@ -32,8 +33,8 @@ record::Record example(int i) {
   return record::read_record(test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", i)), {});
 }
 
-/// The record as a file in the units of its name, with a modified header or modified values, as mistakes
-/// occur in practice.
+/// The record as a file with a changed header or changed values, as mistakes occur in practice. The column
+/// names state the units.
 struct Written {
   std::string V = "V_pu", theta = "theta_rad", P = "P_pu", Q = "Q_pu", f = "f_pu";
   std::function<void(std::vector<double>& row)> edit = [](auto&) {};  ///< t, V, theta, P, Q, f
@@ -141,7 +142,7 @@ TEST(RecordCheckTest, InterpolatesLostSamplesWrittenAsZeros) {
     EXPECT_FALSE(refused(check_record(r, {100, 60}), "dropout"));
   }
 }
-/// A record of which the fault takes a third, with noise.
+/// A record with noise; the fault lasts a third of it.
 record::Record short_record(int samples, double rate, std::mt19937& random) {
   std::normal_distribution<double> noise(0, 1e-4);
   record::Record r;

@@ -79,8 +79,8 @@ TEST_F(ReadingsTest, SignsAndExchangedColumnsAreReported) {
   std::swap(r.P, r.Q);
   EXPECT_EQ(kind(r), "swapped_channels");
 }
-/// Without angle and dispatch, and with a model too wrong for a playback to decide, the steps of |V| and Q
-/// decide.
+/// The record has no angle, the case no dispatch, and the model is too wrong to decide by playback. Then the
+/// steps of |V| and Q decide.
 TEST(SignsWithoutAngle, ReversedAndExchangedPowersAreReported) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   PlantFacts facts = plant_facts(model);
@@ -112,7 +112,7 @@ TEST(SignsWithoutAngle, ReversedAndExchangedPowersAreReported) {
     facts.dispatch.reset();
     other = r;
     std::swap(other.P, other.Q);
-    if (i == 4) continue;  // there P rises at the voltage dip, as Q does
+    if (i == 4) continue;  // in event 4, P rises at the voltage dip, as Q does
     EXPECT_THAT(finding(other), HasSubstr("P and Q are exchanged")) << i;
   }
 }

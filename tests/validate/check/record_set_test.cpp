@@ -31,7 +31,7 @@ TEST_F(RecordSets, ReportEveryProblemOfEveryFileAtOnce) {
     const std::string message = error.what();
     EXPECT_THAT(message, ::testing::HasSubstr("none.csv"));
     EXPECT_THAT(message, ::testing::HasSubstr("two records named avr_ev1.csv"));
-    EXPECT_GE(error.problems().size(), 3U) << message;  // the check refuses the record as well
+    EXPECT_GE(error.problems().size(), 3U) << message;  // the third: the check refuses the record
   }
 }
 TEST_F(RecordSets, AppendToKnownProblems) {
@@ -41,7 +41,7 @@ TEST_F(RecordSets, AppendToKnownProblems) {
   EXPECT_EQ(set.records.size(), 1U);
   EXPECT_THROW(problems.raise(), InputError);
 }
-/// The steps of avr_ev2 alone would suggest that P is reversed too.
+/// Only Q is reversed. The steps of avr_ev2 alone would suggest that P is reversed too.
 TEST_F(RecordSets, HaveTheMistakeThatExplainsAllOfThem) {
   const auto reversed = [](record::Record r) {
     for (double& q : r.Q) q = -q;

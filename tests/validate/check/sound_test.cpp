@@ -36,8 +36,8 @@ test::Simulated frequency_event(const std::string& name, std::size_t lost) {
   return s;
 }
 
-/// A record at 480/s (8 samples a cycle) after a one-cycle window over voltage and current; every `stride`-th
-/// sample.
+/// Every `stride`-th sample of a record at 480/s (8 samples a cycle) after a one-cycle window over voltage
+/// and current.
 record::Record one_cycle(const record::Record& fine, std::size_t stride) {
   record::Record r;
   r.name = fine.name;
@@ -150,7 +150,7 @@ record::Record late_current(const record::Record& fine, std::size_t late) {
   return r;
 }
 TEST(RecordSoundTest, NotesCurrentUpToOneSampleLate) {
-  for (const double cleared : {2.1083, 2.0541}) {  // shorter one: three intervals from step to step
+  for (const double cleared : {2.1083, 2.0541}) {  // the shorter fault lasts three sample intervals
     const test::Simulated s = test::simulate("ieee14_genrou", sim::Conventions::psse(), 4, 2.0041, cleared);
     int noted = 0;
     for (const std::size_t late : {2U, 4U, 6U, 7U, 8U}) {  // of eight ticks

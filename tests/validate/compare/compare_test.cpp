@@ -81,7 +81,8 @@ TEST(CompareTest, JudgesRightAndWrongModel_WithoutNoise) {
   std::vector<EventComparison> wrong = {compare_event(exact.model, exact.record)};
   EXPECT_FALSE(judge(wrong).adequate);
 }
-// Quantisation in steps of 1 % of the machine, without noise: the rounding error of a slow swing is slow.
+// Quantisation in steps of 1 % of the machine's MVA, without noise. The rounding error of a slow swing is
+// slow, hence not white.
 TEST(CompareTest, AllowsForQuantisation) {
   WithoutNoise coarse;
   const double step = 0.01 * coarse.model.plant.mva / 100;
@@ -166,8 +167,8 @@ TEST(CompareTest, PlaysInAngleIntegratedFromFrequency) {
   EXPECT_FALSE(judge(wrong).adequate) << "turns do not hide it";
 }
 /// In a converter that regulates Q, the voltage's noise passes two integrals and moves Q by several times its
-/// own noise. It contains no information on the start of the fault; if taken for white, it shifts the fault
-/// by 5 ms.
+/// own noise. This slow noise contains no information on the start of the fault. If it is taken for white
+/// noise, it shifts the fault by 5 ms.
 TEST(CompareTest, SlowNoiseDoesNotMoveTheSwitchingTimes) {
   const auto converter = [](sim::grid::Grid& grid) {
     test::put_converter(grid, "Tfltr=0.0175,Tfv=0.057,Kp=1.7,Ki=0.9", "Vdip=0.88,Kqi=0.09");
@@ -266,8 +267,8 @@ TEST(CompareTest, AllowsForVoltageNoiseBehindARegulator) {
   const Adequacy a = judge(events);
   EXPECT_TRUE(a.adequate) << a.sentence;
 }
-/// A time constant of a hundredth of a sample needs more steps than a fit allows, but not more than play-in
-/// allows.
+/// A time constant of a hundredth of a sample interval needs more steps than a fit allows, but no more than a
+/// single play-in allows.
 TEST(CompareTest, KeepsThePlayInWhenTheFitFails) {
   RightModel right;
   right.model.plant.controls.push_back(
@@ -327,7 +328,7 @@ TEST(CompareTest, PlaysInPower_OnRequest) {
   EXPECT_EQ(e.channels[0].name, "V");
   EXPECT_EQ(e.channels[1].name, "frequency");
   EXPECT_FALSE(e.channels[1].judged);
-  // Noise of 1e-4 pu on V and, through X'' of some tenths, of 1e-3 pu on Q.
+  // Noise of 1e-4 pu on V causes noise of 1e-3 pu on Q, through an X'' of some tenths of a pu.
   EXPECT_LT(e.channels[0].noise, 5e-4);
   EXPECT_TRUE(a.adequate) << a.sentence;
   RightModel wrong;
@@ -354,7 +355,7 @@ TEST(CompareTest, DetectsWrongParameter_WithFittedSwitchingTimes) {
   EXPECT_TRUE(e.fitted);
   EXPECT_GT(e.channels[0].whole.in_noise, 3);
   EXPECT_LT(e.channels[0].whole.in_noise, middle.channels[0].whole.in_noise);
-  // The start does not move to hide the error; that would count as noise.
+  // The fitted start of the fault does not move to hide the error. Otherwise the error would count as noise.
   for (std::size_t c = 0; c < e.channels.size(); ++c)
     EXPECT_NEAR(e.channels[c].noise, middle.channels[c].noise, 0.01 * middle.channels[c].noise);
 }

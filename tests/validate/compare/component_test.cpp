@@ -1,5 +1,5 @@
-// Comparison of components: the right model leaves only noise; a wrong parameter or a missing block leaves
-// more.
+// Comparison of components: with the right model the residual is only noise; with a wrong parameter or a
+// missing block it is larger.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -127,7 +127,7 @@ TEST(CompareComponentTest, ReadsExcitationRecorderAt208HzWithoutAngle) {
   exciter.p[static_cast<std::size_t>(exciter.effect->parameter_index("KF"))] *= 1.5;
   std::vector<EventComparison> wrong = {compare_event(model, r)};
   EXPECT_FALSE(judge(wrong).adequate);
-  // The whole plant lacks the angle, so P and Q are played in.
+  // The record of the whole plant lacks the angle, so P and Q are played in.
   const record::Record whole = record::parse_record(text, "x.csv", model.record_base, {});
   EXPECT_EQ(whole.angle, record::AngleSource::none);
   EXPECT_THAT(whole.notes, ::testing::Contains(HasSubstr("neither angle nor frequency")));

@@ -135,7 +135,8 @@ TEST(ErrorMapTest, OffsetOfAShortWindowAppearsInTheTotal) {
 }
 
 TEST(ErrorMapTest, IncludesErrorOfTheStartInTheNoise) {
-  // An offset of one standard error of the mean of 121 samples, 11 sigma of the mean of 774.
+  // An offset of 1/11: one standard error of the mean of the 121 quiet samples, and 2.5 standard errors of
+  // the mean of the window's 774 samples.
   const auto t = times();
   std::vector<double> x(t.size(), 1.0 / 11);
   const double exact = error_map(t, x, windows(), white_noise(1), {.quiet = 0}).rows[4].bands[0].normalised;

@@ -64,7 +64,7 @@ TEST(Fitness, ErrorsAreInPercentOfMachineMva) {
 }
 
 /// P falls by 3 % of MVA after 1.5 s, as a governor responds to a rise of frequency; the model's response is
-/// `share` of it.
+/// this fall times `share`.
 EventComparison governor_event(double share) {
   const auto moved = [](double t) { return t > 1.5 ? -0.03 * std::min(1.0, t - 1.5) : 0.0; };
   EventComparison e = event_off_by([&](double t) { return (share - 1) * moved(t); });
@@ -103,7 +103,7 @@ TEST(Fitness, Movement_IsNotJudged_BelowNoiseOrMinimumSize) {
 
 TEST(Fitness, AcceptsErrorAtTheLimit) {
   const auto by = plain_limits();
-  const auto off = [&](double percent) {  // error of one sample of the fault; 100 % are 50 MVA
+  const auto off = [&](double percent) {  // `percent`: error of one sample of the fault [% of 50 MVA]
     return judge_fitness({event_off_by([&](double t) { return t == 1.2 ? percent / 100 : 0.0; })}, 50, by);
   };
   const double at = off(8).rows[1].errors.mxe;

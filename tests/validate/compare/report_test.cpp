@@ -174,8 +174,8 @@ TEST(CompareReportTest, HeadlinesHaveAtMostEightWords) {
   EXPECT_EQ(headline(false, unfit), "Model does not match the records");
   EXPECT_EQ(headline(true, unfit), "Only noise remains, but limits are exceeded");
 }
-// A fit is judged by the chi-square of whole events, the error map by window and band: where a channel is
-// marked as above noise, the page does not claim that only noise remains.
+// A fit is judged by the chi-square of whole events, the error map by window and band. If the map marks a
+// channel as above noise, the page must not claim that only noise remains.
 TEST(CompareReportTest, PageOfAFitStatesWhyPlaybackExceedsNoise) {
   std::vector<EventComparison> events = {example_event()};
   judge(events);

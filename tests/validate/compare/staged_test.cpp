@@ -1,5 +1,5 @@
-// Comparison of staged tests: the right model leaves only noise; a wrong model or an undeclared test leaves
-// more.
+// Comparison of staged tests: with the right model the residual is only noise; with a wrong model or an
+// undeclared test it is larger.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

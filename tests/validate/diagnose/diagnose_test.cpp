@@ -54,7 +54,7 @@ TEST(DiagnoseFull, NamesMissingExciter) {
   EXPECT_NE(d.verdict, Verdict::unexplained);
   EXPECT_EQ(d.side, hypothesis::Side::excitation);
   EXPECT_THAT(d.effects, testing::ElementsAre("SEXS"));
-  // A free field voltage removes the residual, a free torque does not.
+  // A freely estimated field voltage explains the residual, a freely estimated torque does not.
   EXPECT_LT(d.field.reduced_chi2(), 1.1);
   EXPECT_GT(d.torque.reduced_chi2(), 100);
   const hypothesis::Judgement& best = d.ranked.front();

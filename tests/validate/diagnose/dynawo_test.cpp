@@ -1,4 +1,4 @@
-// Case 1 of RTE's dynamic model validation engine, simulated by Dynawo, from files to diagnosis
+// Case 1 of RTE's dynamic model validation engine, simulated by Dynawo, from its files to the diagnosis
 // (docs/reference/records-of-others.md).
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -123,7 +123,8 @@ TEST(DynawoRecordsFull, FindsWrongInertia) {
     EXPECT_GT(channel.rms_before, 50) << channel.unit;
     EXPECT_LT(channel.rms_after, 0.005 * kMachineMva) << channel.unit;
   }
-  // The record has no noise, so the numerical differences between two programs suffice to fail.
+  // The record has no noise, so the verdict is "poor" because of the numerical differences between two
+  // programs alone.
   EXPECT_EQ(c.adequacy, calibrate::Adequacy::structure_poor);
 }
 

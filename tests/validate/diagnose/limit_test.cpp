@@ -1,4 +1,4 @@
-// A wrong limit of the model that its response therefore never reaches.
+// A limit of the model that is too high, so that the model's response never reaches it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -19,8 +19,8 @@ namespace {
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
-/// Two events of the example, whose exciter the model lacks. The fits are short: the report is tested, not
-/// their quality.
+/// Two events of the example; the model lacks the plant's exciter. The fits are short, because the test is
+/// about the report, not about their quality.
 struct Example {
   plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   Diagnosis d;
@@ -125,7 +125,7 @@ TEST(DiagnosisReportTest, ErrorMapsEqualTheJson) {
     for (const auto& c : e["channels"]) {
       const auto& map = c["map_after"];
       for (std::size_t i = 0; i + 1 < map.size();
-           i += 5) {  // total and four bands; the whole record comes last
+           i += 5) {  // each window has five rows, the total and four bands; the whole record comes last
         const double rms = map[i]["rms_pu"].get<double>() * c["units_in_pu"].get<double>();
         expected.push_back({c["name"], map[i]["window"], ""});
         char text[64];
@@ -163,7 +163,8 @@ TEST(DiagnosisReportTest, TablesEqualTheJson) {
   EXPECT_TRUE(j["missing_torque"].is_null());
 }
 TEST(DiagnosisReportTest, ErrorFallsWithTheAddedEffect) {
-  const auto j = figures();  // an exciter, even from a short fit, is nearer to the truth than none
+  const auto j = figures();  // even after a short fit, the model with an exciter is nearer to the truth than
+                             // the model without
   EXPECT_LT(j["after"]["normalised_rms"], j["before"]["normalised_rms"]);
 }
 TEST(DiagnosisReportTest, VerdictIsFirst) {
@@ -266,7 +267,7 @@ TEST(DiagnosisReportTest, PageOmitsUserModels_WithoutASearch) {
 }
 
 TEST(DiagnosisPageTest, RendersInABrowser) {
-  // A drag from 30 % to 60 % of the first chart's width: a user's zoom; then a double-click.
+  // A user zooms by a drag from 30 % to 60 % of the first chart's width, then double-clicks to zoom out.
   const std::string act = R"js(<script>
     const box=document.querySelector(".u-over"), r=box.getBoundingClientRect(), state=()=>charts_of_test().map((c)=>({group:c.of.group,x:c.x,
       part:c.box.closest("figure").querySelector(".part").textContent}));
@@ -286,7 +287,7 @@ TEST(DiagnosisPageTest, RendersInABrowser) {
   EXPECT_EQ(shown.complaints, "");
   const auto& result = shown.result;
   EXPECT_EQ(result["figures"], figures());
-  EXPECT_GT(result["charts"].get<int>(), 12);  // folded ones too
+  EXPECT_GT(result["charts"].get<int>(), 12);  // including charts in folded sections
   const auto range = [&](const char* when, std::size_t chart) -> std::pair<double, double> {
     return {result[when][chart]["x"][0], result[when][chart]["x"][1]};
   };

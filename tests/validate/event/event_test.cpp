@@ -36,9 +36,10 @@ TEST(PrepareEvents, PreEventWindowEndsAtTheStepOfPAndQ) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const FitEvent e = prepare_events(model, {r}).front();
   EXPECT_TRUE(e.switchings.empty());
-  EXPECT_EQ(e.start.samples, 13);  // up to 0.2 s at 60/s
+  EXPECT_EQ(e.start.samples, 13);  // the quiet part ends at 0.2 s, at 60/s
 }
-/// Two samples of fault at 30/s cannot distinguish a decay from a filter; the given switching times do.
+/// With two samples of fault at 30/s, a decay cannot be distinguished from a filter. The given switching
+/// times resolve this.
 TEST(PrepareEvents, UsesGivenSwitchingTimes) {
   record::Record r = subtransient(0.5, 4, 0.025);
   r.P.assign(r.t.size(), 0.4);
@@ -66,8 +67,8 @@ TEST(PrepareEvents, FilterWindowIsTheSameForGivenAndFoundTimes) {
   EXPECT_EQ(given.start.samples, found.start.samples);
   EXPECT_EQ(given.switchings[1].time, 3.1);
 }
-/// A fault near the terminal behind a triangular window of two cycles, time stamps with six decimals: the
-/// filtered fault end is one interval wider than its beginning.
+/// A fault near the terminal behind a triangular window of two cycles, with time stamps of six decimals: the
+/// filtered step at the fault's end is one sample interval wider than that at its beginning.
 TEST(PrepareEvents, AcceptsFaultEndOneIntervalWider) {
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const double on = 3 + 0.5 / 60;
@@ -98,7 +99,7 @@ TEST(PrepareEvents, AcceptsDecayAtFilteredFaultEnd) {
   EXPECT_NEAR(e.switchings[0].time, on, kOneCycle / 2);
   EXPECT_NEAR(e.switchings[1].time, off, kOneCycle / 2);
 }
-/// The filter spreads every step over the same number of samples; the swing is wider.
+/// The filter spreads every step over the same number of samples. The swing covers more samples.
 TEST(PrepareEvents, IgnoresSwingWiderThanFilteredSteps) {
   record::Record r = filtered(near_loss());
   r.P.assign(r.t.size(), 0.4);

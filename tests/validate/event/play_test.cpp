@@ -1,4 +1,5 @@
-// Cost and error of lenient play: steps per sample, and the error relative to the noise.
+// Cost and error of a playback with lenient tolerances: steps per sample, and the error relative to the
+// noise.
 #include "validate/event/play.hpp"
 
 #include <gtest/gtest.h>
@@ -34,8 +35,8 @@ Played with_exciter(const char* name) {
           error.squaredNorm() / static_cast<double>(error.size())};
 }
 
-/// Measured 2026-11-25: 1.0 to 2.6 steps and 1.1e-5 to 7.5e-4 of the variance. A common tolerance for all
-/// states gave 5.1 steps for EXST1, 5.7 for EXAC1 and 7.9 for ESAC1A.
+/// Measured 2026-11-25: 1.0 to 2.6 steps per sample, and an error of 1.1e-5 to 7.5e-4 of the noise variance.
+/// With a common tolerance for all states, EXST1 took 5.1 steps, EXAC1 5.7 and ESAC1A 7.9.
 class LenientPlay : public ::testing::TestWithParam<const char*> {};
 TEST_P(LenientPlay, TakesFewStepsWithErrorBelowOnePerCentOfNoise) {
   const Played p = with_exciter(GetParam());

@@ -68,7 +68,7 @@ struct Plant : ::testing::Test {
 
 TEST_F(Plant, ControlMeasuresAtThePointOfCommonCoupling) {
   sim::plant::Plant plant = model();
-  EXPECT_GT(missed(plant), 1e-3);  // as if the control measured at the plant's own bus
+  EXPECT_GT(missed(plant), 1e-3);  // with the control's measurement assumed at the plant's own bus
   MeasuredPoint point;
   point.collector = kCable;
   point.tried.plant = plant;

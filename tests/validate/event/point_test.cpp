@@ -98,7 +98,7 @@ TEST_F(TwoUnits, IntegratedAngleGetsTurnsForAllUnits) {
   double worst = 0;
   for (std::size_t k = 0; k < left.t.size(); ++k)
     worst = std::max({worst, std::abs(left.P[k] - alone.P[k]), std::abs(left.Q[k] - alone.Q[k])});
-  EXPECT_LT(worst, 1e-5);  // without turns the machines cannot follow the angle
+  EXPECT_LT(worst, 1e-5);  // without the phase jumps (turns) the machines cannot follow the angle
 }
 TEST_F(TwoUnits, ShareDefinesTheDispatch) {
   const record::Record inner = behind_collector(seen(), collector);

@@ -1,5 +1,5 @@
-// An angle integrated from a frequency: steps are found in the power, a meter's peaks are dropped, and P and
-// Q determine the turn at each switching.
+// An angle integrated from a frequency: switchings are found in the power, a meter's frequency peaks are
+// removed, and P and Q determine the phase jump (turn) at each switching.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,8 @@ struct Turns : ::testing::Test {
     model.conventions = s.grid.conventions;
     model.record_base = whole.base;
   }
-  /// Error of the angle after its turns, without the samples next to switchings and without the mean.
+  /// Error of the angle after the phase jumps are added, without its mean and without the samples next to
+  /// switchings.
   [[nodiscard]] double off(const FitEvent& e) const {
     std::vector<double> left;
     for (std::size_t k = 0; k < whole.t.size(); ++k) {
@@ -40,7 +41,7 @@ TEST_F(Turns, AreAdded_WhenTheFrequencyLacksTheSteps) {
   const auto events = prepare_events(model, {test::by_frequency(whole, {s.t_on, s.t_off})});
   ASSERT_EQ(events[0].switchings.size(), 2U);
   EXPECT_GT(std::abs(events[0].switchings[0].turn), 0.05);
-  EXPECT_LT(off(events[0]), 0.1);  // the fit's prior deviation
+  EXPECT_LT(off(events[0]), 0.1);  // the fit's prior standard deviation
 }
 TEST_F(Turns, MeterPeakIsDropped) {
   record::Record r = whole;  // f: change of the angle from the sample before to the sample after
@@ -53,7 +54,7 @@ TEST_F(Turns, MeterPeakIsDropped) {
   r.angle = record::AngleSource::integrated;
   const auto events = prepare_events(model, {r});
   ASSERT_EQ(events[0].switchings.size(), 2U);
-  EXPECT_LT(off(events[0]), 0.1);  // the fit's prior deviation
+  EXPECT_LT(off(events[0]), 0.1);  // the fit's prior standard deviation
   EXPECT_FALSE(events[0].record.notes.empty());
 }
 

@@ -27,7 +27,7 @@ struct Bounded {
   }
   double solve() {
     ceres::Solver::Options o;
-    o.function_tolerance = 1e-3;  // each step along the clipped direction gains a ten-thousandth
+    o.function_tolerance = 1e-3;  // a step that is clipped at the bound reduces the cost by only 1e-4
     o.max_num_line_search_step_size_iterations = 0;
     o.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;

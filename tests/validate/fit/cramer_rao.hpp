@@ -1,6 +1,6 @@
 #pragma once
 // Cramer-Rao bound of a plant's parameters by central differences of the playback and the known noise of the
-// records. It uses nothing of the fit's own error estimates.
+// records. It is independent of the fit's own error estimates.
 #include <Eigen/Dense>
 #include <string_view>
 #include <vector>
@@ -12,9 +12,9 @@ namespace swingbank::validate::test {
 /// Noise of the example's records (configs/records/README.md) and of add_noise() [pu].
 inline double known_noise(playin::Output channel) { return channel == playin::Output::speed ? 2e-5 : 2e-3; }
 
-/// Least standard errors [unit of the parameter] given the events and priors of relative standard deviation
-/// `FreeParameter::prior_sd`. Switching times and start of every event are unknown too. Omits the noise of
-/// the voltage (2e-4 pu, which adds some per cent).
+/// Smallest possible standard errors [unit of the parameter], given the events and priors with the relative
+/// standard deviations `FreeParameter::prior_sd`. Switching times and start of every event are unknown too.
+/// Omits the noise of the voltage (2e-4 pu, which adds some per cent).
 inline std::vector<double> cramer_rao(const sim::plant::PlantUnderTest& truth,
                                       const std::vector<event::FitEvent>& events,
                                       const std::vector<fit::FreeParameter>& free) {

@@ -46,7 +46,7 @@ TEST_F(DrawsTest, StayWithinSearchRanges) {
     }
   }
 }
-/// An upper limit acts only if a draw is as low as its signal, far below its prior.
+/// An upper limit acts only if its drawn value is as low as the limited signal, far below the prior mean.
 TEST_F(DrawsTest, ReachLowLimits) {
   const Draws draw(example_.model.plant, free_, 4);
   const std::size_t limit = index("EMAX");

@@ -9,9 +9,9 @@
 namespace swingbank::validate::fit {
 namespace {
 
-/// A converter that regulates Q through two integrals and the voltage behind them. The effect on Q of half a
-/// sample of fault grows for eight seconds. From the middles of the sample intervals the search ended at
-/// 1,800.
+/// A converter with two integral regulators in series, of Q and then of the voltage. A change of the fault's
+/// length by half a sample has an effect on Q that grows for eight seconds. A search that began with the
+/// middles of the sample intervals ended at a chi-square per value of 1,800.
 TEST(EarlyStates, FitConverges_WhenTheResponseDivergesFromWrongTimes) {
   const auto converter = [](sim::grid::Grid& grid) {
     test::put_converter(grid, "Tfltr=0.02,Tfv=0.05,Kp=2,Ki=1", "Vdip=0.75,Kqi=0.1");

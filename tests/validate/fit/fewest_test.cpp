@@ -49,7 +49,7 @@ struct Known {
 TEST(SparseSelection, SelectsTheWrongParameter) {
   EXPECT_EQ(Known({{"GENROU.H", 1.3}}, 2).named(), std::vector<std::string>{"GENROU.H"});
 }
-/// One per cent off has significant evidence here; it is selected only if exact values are required.
+/// An error of one per cent has significant evidence here. It is selected only if exact values are required.
 TEST(SparseSelection, AcceptsErrorOfOnePerCent) {
   const Known known({{"GENROU.H", 1.3}, {"GENROU.Xdp", 1.01}}, 2);
   EXPECT_EQ(known.named(), std::vector<std::string>{"GENROU.H"});
@@ -73,8 +73,8 @@ std::pair<plant::PlantModel, noise::WhitenedEvents> unit_behind_a_fault(
   return {std::move(model), std::move(events)};
 }
 
-/// A unit whose inner regulator is a gain alone (ESST4B, KIM = 0), and whose outer one has both gains too low
-/// by the same factor: the gain behind them has the same effect.
+/// A unit with ESST4B whose inner regulator is a pure gain KPM (KIM = 0). In the model both gains of the
+/// outer regulator are too low by the same factor, so an increase of KPM has the same effect.
 TEST(SparseSelection, ReportsThatTwoParametersReplaceOne) {
   const auto exciter = [](sim::grid::Grid& grid) {
     const sim::Effect& esst4b = *sim::library::compiled().find("ESST4B");
@@ -98,8 +98,8 @@ TEST(SparseSelection, ReportsThatTwoParametersReplaceOne) {
   EXPECT_EQ(found.alternatives[0].instead, (std::vector<std::string>{"ESST4B.KPR", "ESST4B.KIR"}));
 }
 
-/// A ceiling whose prior mean is 20 % too high is not reached there; its cost equals that of a ceiling that
-/// is just not reached.
+/// The ceiling is never reached at its prior mean, which is 20 % too high. The cost there equals that of a
+/// ceiling that is just not reached.
 TEST(SparseSelection, SelectsLimitThatThePriorMeanNeverReaches) {
   const sim::Effect& sexs = *sim::library::compiled().find("SEXS");
   const auto exciter = [&](sim::grid::Grid& grid) {

@@ -1,4 +1,5 @@
-// Evidence of a structure from its fit: a parameter counts as far as the records determine it.
+// Evidence of a model structure from its fit: a parameter is penalised only as far as the records determine
+// it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,7 +44,7 @@ TEST(FitAxis, ValuesAtABoundDoNotDependOnTheStart) {
       EXPECT_NEAR(from(start).value(from(start).z(bound)), bound, 1e-11 * bound);
     }
 }
-/// The plant on a quarter of its base: H is beyond its usual range, and the search continues from there.
+/// The plant on a quarter of its MVA base: H is beyond its usual range, and the search moves it further.
 TEST(FitAxis, MovesValueFurtherBeyondItsRange_WhenTheRecordsRequireIt) {
   ExciterExample example(kPriorSd);
   sim::plant::Block& machine = example.model.plant.machine;
@@ -60,7 +61,8 @@ TEST(FitAxis, MovesValueFurtherBeyondItsRange_WhenTheRecordsRequireIt) {
   EXPECT_NEAR(f.parameters.front().value, expected, 0.02 * expected);
   EXPECT_FALSE(f.parameters.front().at_bound);
 }
-/// The machine without its exciter: the parameters would otherwise be biased beyond physical values.
+/// The model lacks the machine's exciter. Without the constraints, the fit would move the parameters to
+/// unphysical values.
 TEST(FitOrderings, ConstrainEveryFit) {
   ExciterExample example(0.5);
   example.model.plant.controls.clear();

@@ -31,9 +31,9 @@ TEST(Sign, IsFree_WhenTheRangeAllowsIt) {
   };
   EXPECT_TRUE(open("IEEET1", "KE"));
   EXPECT_TRUE(open("IEEEVC", "XC"));
-  EXPECT_FALSE(open("IEEET1", "VRMIN"));  // never above zero
-  EXPECT_FALSE(open("IEEET1", "KA"));     // never below
-  EXPECT_FALSE(open("STAB1", "KT"));      // a gain, within decades
+  EXPECT_FALSE(open("IEEET1", "VRMIN"));  // its range has no positive values
+  EXPECT_FALSE(open("IEEET1", "KA"));     // its range has no negative values
+  EXPECT_FALSE(open("STAB1", "KT"));      // a gain whose range spans decades
 }
 /// Self-excited DC exciters have a KE just below zero in most public cases; the default is 1.
 class SelfExcited : public ::testing::TestWithParam<bool> {};
@@ -56,7 +56,7 @@ TEST_P(SelfExcited, IsFoundFromTheDefaultValue) {
   EXPECT_LT(KE->error, 0.3);
   EXPECT_LT(f.reduced_chi2(), 0.05);
 }
-/// The optimum lies at the end of a curved valley, where lenient steps correct their sensitivities.
+/// The optimum lies at the end of a curved valley, along which lenient steps correct their sensitivities.
 INSTANTIATE_TEST_SUITE_P(Steps, SelfExcited, ::testing::Values(false, true),
                          [](const auto& lenient) { return lenient.param ? "lenient" : "exact"; });
 /// Some public cases have machines with X''d below Xl. The fit to a record of such a machine keeps that.
@@ -106,7 +106,7 @@ TEST(FitOrderings, ReportsClampedParameter_WhenTheModelKeepsTheOrder) {
             "GENROU.Xdpp (limited by X''d > Xl): at a bound, where the 95 % interval is not valid.");
 }
 /// A regulator of gain 2000 behind a lead of eleven times responds to the noise of each sample with its
-/// limits. A search in a public case reached these values and was dropped because of them.
+/// limits. A search in a public case reached these values and was abandoned because of them.
 TEST(FitSteps, UsesLenientSteps_WhenSmallStepsFail) {
   ExciterExample example(0.2);
   sim::plant::Block exciter{&effect("EXAC1"), effect("EXAC1").default_parameters()};

@@ -68,7 +68,7 @@ TEST_P(EventSensitivitiesTest, AgreeWithCentralDifferences) {
       parameter_value(plant, f.id) += by * axis_unit(model.plant, f);
     });
   }
-  // The part that the event's own state absorbs, each with its prior deviation.
+  // The part that the event's own state absorbs; every state variable has its prior standard deviation.
   std::vector<Eigen::VectorXd> own;
   for (std::size_t k = 0; k < event.switchings.size(); ++k)
     if (const double off = event.switchings[k].uncertainty; off > 0)

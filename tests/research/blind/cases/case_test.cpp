@@ -65,7 +65,7 @@ TEST(BlindCase, ReachesTheRequestedSize) {
   const BlindCase made = make(tiny(), "FORCEDOSC", 6);
   ASSERT_EQ(made.hidden.size(), 1U);
   EXPECT_DOUBLE_EQ(made.hidden[0].wanted, 60.0);
-  EXPECT_NEAR(made.hidden[0].left, 60.0, 6.0);  // sizes are found to 10 %
+  EXPECT_NEAR(made.hidden[0].left, 60.0, 6.0);  // the size is set with an accuracy of 10 %
   EXPECT_GT(made.hidden[0].scale, 0.0);
 }
 
@@ -348,7 +348,7 @@ TEST(BlindPlan, HasTheMixtureOfTheConfigInRandomOrder) {
   EXPECT_EQ(unlisted, 60);
   EXPECT_EQ(pairs, 40);
   EXPECT_GE(kinds.size(), 20U);
-  EXPECT_NEAR(first_none, 40, 20);  // shuffled: four standard deviations of a draw of 100
+  EXPECT_NEAR(first_none, 40, 20);  // shuffled; the tolerance is four standard deviations of a draw of 100
   const BlindPlan again = plan_blind(config, {}, 500, 4, 0);
   for (std::size_t k = 0; k < plan.cases.size(); ++k) EXPECT_EQ(plan.cases[k].hidden, again.cases[k].hidden);
 }

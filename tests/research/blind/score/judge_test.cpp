@@ -34,7 +34,8 @@ TEST(SeenCase, SubtractsTheSecondRecordedUnit) {
   const fs::path run = fs::path(testing::TempDir()) / ("seen_case_" + std::to_string(::getpid()));
   fs::remove_all(run);
   cases::write_blind_case(made, config, "c0001", run / "c0001", run / "truth.json");
-  // Only the switching times are fitted: the right unit alone leaves little more than noise.
+  // Only the switching times are fitted. With the right model of the unit, the residual is little more than
+  // noise.
   EXPECT_LT(left_by(made, run / "c0001"), 1.2);
   fs::remove(run / "c0001" / "point.toml");
   EXPECT_GT(left_by(made, run / "c0001"), 100.0);

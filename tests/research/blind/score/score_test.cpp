@@ -54,7 +54,8 @@ class BlindScoring : public testing::Test {
 };
 
 TEST(BlindRate, WilsonInterval) {
-  // Closed form by hand: 10 of 10 gives 1/(1 + z^2/10); 5 of 10 is symmetric about a half.
+  // Closed form by hand: the interval of 10 of 10 begins at 1/(1 + z^2/10), and that of 5 of 10 is symmetric
+  // about 0.5.
   const Rate all{10, 10}, half{5, 10}, none{};
   EXPECT_NEAR(all.low(), 0.72247, 1e-5);
   EXPECT_DOUBLE_EQ(all.high(), 1.0);
