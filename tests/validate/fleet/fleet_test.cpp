@@ -73,7 +73,7 @@ FleetRow named() {
   return r;
 }
 
-/// A plant with a named effect, one without a diagnosis, and an adequate one, the worst first.
+/// Rows of a plant with a named effect, of one without a diagnosis, and of an adequate one, the worst first.
 std::vector<FleetRow> broken() {
   std::vector<FleetRow> rows = {row("a", "adequate"), failed_row("c", "no \"file\"\nand no model"), named()};
   sort_worst_first(rows);
@@ -261,7 +261,7 @@ TEST(FleetTables, BrowserSortsAndFiltersRows) {
     </script>)");
   EXPECT_EQ(shown.complaints, "");
   const auto& r = shown.result;
-  const auto numbers = [](const nlohmann::json& cells) {  // missing ones are last in either order
+  const auto numbers = [](const nlohmann::json& cells) {  // missing ones are last in both orders
     std::vector<double> all;
     for (const std::string cell : cells)
       all.push_back(cell == "\u2013" ? std::numeric_limits<double>::infinity() : std::stod(cell));

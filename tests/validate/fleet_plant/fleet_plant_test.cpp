@@ -62,7 +62,8 @@ TEST_F(FleetPlantFiles, KeepsForeignFiles) {
 }
 
 TEST(FleetChance, FollowsTheChiSquareDistribution) {
-  // Quantiles from tables: 5 % at 3.841, 5.991, 7.815, 9.488, 18.307 for 1, 2, 3, 4, 10 degrees (4 digits).
+  // Chi-square quantiles from tables (4 digits): 5 % at 3.841, 5.991, 7.815, 9.488 and 18.307 for 1, 2, 3, 4
+  // and 10 degrees of freedom.
   const std::pair<int, double> quantiles[] = {{1, 3.841}, {2, 5.991}, {3, 7.815}, {4, 9.488}, {10, 18.307}};
   for (const auto& [k, x] : quantiles) EXPECT_NEAR(chance_of(x, k, 1), 0.05, 2e-5) << k;
   EXPECT_DOUBLE_EQ(chance_of(20, 1, 30), 30 * chance_of(20, 1, 1));

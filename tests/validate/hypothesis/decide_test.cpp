@@ -24,7 +24,7 @@ class Decide : public ::testing::Test {
     if (!j.fit.failed.empty()) throw std::runtime_error(j.fit.failed);
     return j;
   }
-  /// Decision between competitors of equal evidence.
+  /// Measurement that would decide between competing hypotheses of equal evidence.
   [[nodiscard]] Decision between(const std::vector<Judgement>& competitors) const {
     std::vector<Explanation> all;
     for (const Judgement& j : competitors)

@@ -41,7 +41,7 @@ TEST(Hypotheses, EveryStartAndDrawCanRun) {
       }
     EXPECT_GE(drawn.size(), 20U) << h.name;
   }
-  EXPECT_TRUE(added.contains("MAXEX2"));  // three points of one curve
+  EXPECT_TRUE(added.contains("MAXEX2"));  // its parameters include three points of one curve
   EXPECT_TRUE(added.contains("TGOV1"));
 }
 TEST(Hypotheses, RatioOfAddedTransformerIsFreeWithinItsTaps) {
@@ -56,7 +56,8 @@ TEST(Hypotheses, RatioOfAddedTransformerIsFreeWithinItsTaps) {
   }
   FAIL() << "no transformer is tried";
 }
-/// IEEEST's A5 and A6 may have either sign, EXST1's KF may not; instruments and parameters have no draws.
+/// IEEEST's A5 and A6 may have either sign, EXST1's KF may not. Hypotheses of instruments and of single
+/// parameters have no random starts.
 TEST(Hypotheses, FreesInactivePartsInGroups) {
   std::map<std::string, std::vector<std::string>> names;
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
@@ -117,7 +118,7 @@ TEST(Hypotheses, ReplacementIsAloneInItsSlot) {
     EXPECT_TRUE(playin::can_run(h.plant)) << h.name;
   }
 }
-/// In any block of a converter that has a switch, also in a source with built-in control.
+/// Switches of every block of a converter are tried, also those of a source with built-in control.
 TEST(Hypotheses, TriesEverySwitchInItsOtherPosition) {
   const auto names = [](const char* source, const std::vector<const char*>& controls) {
     sim::plant::Plant plant;
@@ -139,7 +140,8 @@ TEST(Hypotheses, TriesEverySwitchInItsOtherPosition) {
             (std::set<std::string>{"REGCB1:rateFlag=1", "REGCB1:pqFlag=1", "REECA1:PFFLAG=1",
                                    "REECA1:VFLAG=0", "REECA1:QFLAG=1", "REECA1:PFLAG=1", "REECA1:PQFLAG=1"}));
 }
-/// Its edges lie on either side of the null value 0. A start wider than the signal has no sensitivity.
+/// The edges of a dead-band lie on either side of the null value 0. If the start is wider than the signal,
+/// the dead-band's width has no sensitivity.
 TEST(Hypotheses, TriesDeadBandFromNarrowToWide) {
   const auto standard = [](const char* name) {
     const sim::Effect* effect = sim::library::compiled().find(name);

@@ -49,21 +49,21 @@ TEST_F(IdentifiedExciter, ReachesTheOptimumFoundFromTheTruth) {
   EXPECT_EQ(best.hypothesis.name, "SEXS");
   ASSERT_TRUE(best.fitted);
   EXPECT_LT(best.fit.reduced_chi2(), 1.05);
-  // Parameter values of the plant that made the records.
+  // Fit at the parameter values of the plant that made the records.
   const auto free = free_of(best.hypothesis, base_model_.prior_sd);
   fit::FitOptions truth{.iterations = 20, .lenient = true};
   for (const auto& e : best.fit.events) truth.start.push_back(e.state);
   truth.values = fit::values_of(best.hypothesis.plant, free);
   const fit::Fit there = fit::fit({best.hypothesis.plant, best.hypothesis.conventions}, events_, free, truth);
   EXPECT_LT(fit::penalised(best.fit), fit::penalised(there) + 5);
-  // A hypothesis far behind the best is not fitted and reports that.
+  // A hypothesis whose preliminary fit is far worse than the best is not fitted, and it states so.
   EXPECT_FALSE(all.back().fitted);
   EXPECT_GT(all.back().behind, 1000);
   EXPECT_NE(all.back().why_not.find("than that of SEXS"), std::string::npos) << all.back().why_not;
 }
 
-/// A phase error of an instrument transformer is found beside the exciter; without an error none is found.
-/// Phase errors of voltage and current rotate the power in the same way.
+/// A phase error of an instrument transformer is found in addition to the exciter; without a phase error none
+/// is found. Phase errors of voltage and current rotate the power in the same way.
 TEST_F(IdentifiedExciter, FindsTheMissingCompanionToo) {
   EXPECT_EQ(found({"SEXS"}).front().companion, "");
   auto wrong = records(model_);

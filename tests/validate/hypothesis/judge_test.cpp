@@ -33,10 +33,10 @@ TEST(Objection, AllowsScatterOfAnUnaffectedEvent) {
 }
 TEST(Objection, RefusesImprovementAtTheCostOfAnEvent) {
   EXPECT_NEAR(event("b", 1.0, 1.03).saves(), -30, 1e-9);
-  // 30 of chi2: above 20, and above 10 % of this evidence.
+  // The event's chi2 rises by 30, which is above 20 and above 10 % of this evidence.
   EXPECT_THAT(objection({event("a", 1.2, 1.0), event("b", 1.0, 1.03)}, 200, kAdequate),
               HasSubstr("increases the error of held-out b"));
-  // Below 10 % of this evidence, and still as good as noise.
+  // The rise is below 10 % of this evidence, and the event's residual is still noise.
   EXPECT_THAT(objection({event("a", 3.0, 1.0), event("b", 1.0, 1.03)}, 2000, kAdequate), IsEmpty());
 }
 TEST(Objection, RefusesDeteriorationOfABadEvent) {

@@ -61,7 +61,7 @@ class Exchange : public ::testing::Test {
     if (found == all.end()) throw std::runtime_error("no hypothesis " + name);
     return *found;
   }
-  /// `name` alone in the model, its first parameter fitted to `value`.
+  /// Judgement of the effect `name`, added alone to the model, with its first parameter fitted to `value`.
   [[nodiscard]] Judgement alone(const std::string& name, double value) const {
     Judgement j;
     j.hypothesis = named(all_hypotheses(model().under_test(), model().library), name);
@@ -71,7 +71,7 @@ class Exchange : public ::testing::Test {
     sim::plant::parameter_value(j.fit.plant, f.id) = value;
     return j;
   }
-  /// `second` in addition to the fitted effect.
+  /// Judgement of the effect `second`, added to the model that contains the fitted effect `first`.
   [[nodiscard]] Judgement beside(const Judgement& first, const std::string& second, double value) const {
     const BaseModel then = after(base_model_, first);
     Judgement j;
@@ -106,7 +106,7 @@ TEST_F(Exchange, KeepsTheFittedSecondEffectBesideTheSlotsCompetitors) {
                                             "STEPUP + HYGOV", "STEPUP + IEEEG1"));
   for (const Judgement& j : competitors) {
     EXPECT_FALSE(j.fit.failed.empty());
-    // The prior is that before any fit; the start is the end of the pair's fit.
+    // The prior mean is the value before any fit. The start is the value at the end of the pair's fit.
     const sim::plant::ParameterId own = pair.hypothesis.free.front().id;
     const auto id = sim::plant::same_parameter(j.hypothesis.plant, pair.hypothesis.plant, own).value();
     EXPECT_EQ(sim::plant::block_effect(j.hypothesis.plant, id.block).name, "STEPUP");
@@ -139,7 +139,7 @@ TEST_F(Exchange, DropsEffectsWithoutTheirPrerequisite) {
 
 class Crossing : public Exchange {
  protected:
-  /// A pair of these names and this log evidence.
+  /// Judgement of a pair with these names and the log evidence `gain`.
   [[nodiscard]] static Judgement pair(const std::string& with, const std::string& name, double gain) {
     Judgement j;
     j.hypothesis.with = with;

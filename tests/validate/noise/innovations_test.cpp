@@ -55,8 +55,8 @@ TEST(Innovations, EqualCholeskyWhitening) {
   EXPECT_LT((e - inverse_root).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-/// Five quiet records of a machine with a regulator of gain 200: the model's responses to their noisy
-/// voltage.
+/// Five records without an event, of a machine with a regulator of gain 200, and the model's responses to
+/// their noisy voltage.
 struct Quiet {
   plant::PlantModel model;
   WhitenedEvents events;
@@ -129,7 +129,7 @@ TEST(RememberNoise, WhitensVoltageNoiseBehindARegulator) {
   quiet.events = quiet.events.with(remember_noise(quiet.model.under_test(), quiet.fits, quiet.events));
   ASSERT_TRUE(quiet.events.noise(0).memory);
   quiet.compute_residuals();
-  // 75 squares scatter by 16 %, and the measured noise of V by another 20 %.
+  // A mean of 75 squares scatters by 16 %, and the measured noise of V by another 20 %.
   EXPECT_NEAR(quiet.slow_power(), 1.0, 0.6);
 }
 

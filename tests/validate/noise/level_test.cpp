@@ -17,8 +17,8 @@ struct Case {
   WhitenedEvents events;
   std::vector<EventFit> fits;
 };
-/// Events whose residual is noise of that colour (1: white) on a slow model error of ten times its size; the
-/// assumed noise is `assumed` times the true one.
+/// Events whose residual is noise of this colour (1: white) plus a slow model error ten times as large. The
+/// assumed noise level is `assumed` times the true one.
 Case make(double colour, double assumed) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal(0, kSigma);
@@ -71,7 +71,7 @@ TEST(SharpenNoise, EstimatesWhiteNoiseWithinFivePerCent) {
 TEST(SlowRemainder, IsSmallForWhiteNoiseAndLargeForSlow) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
-  for (const double slow : {0.0, 0.25}) {  // a quarter of the noise, over seconds
+  for (const double slow : {0.0, 0.25}) {  // a slow component over seconds, of a quarter of the noise's size
     Case c = make(1.0, 1.0);
     for (auto& f : c.fits) {
       f.residual.assign(2, {});
@@ -84,8 +84,9 @@ TEST(SlowRemainder, IsSmallForWhiteNoiseAndLargeForSlow) {
       }
     }
     const double remainder = slow_remainder(c.fits, c.events);
-    // The largest of six nearly normal numbers. Slow: 0.0625 of the variance over 200 samples is some 5 times
-    // the power of white noise in two seconds, 4 / sqrt(2 / 35).
+    // Without a slow component, the result is the largest of six nearly normal numbers. With it: 0.0625 of
+    // the variance over 200 samples is some 5 times the power of white noise in two seconds, which gives 4 /
+    // sqrt(2 / 35).
     if (slow == 0.0) {
       EXPECT_LT(remainder, 5.0);
     } else {
@@ -99,9 +100,10 @@ TEST(SharpenNoise, DoesNotChangeColouredNoise) {
   EXPECT_EQ(sharp.of(0).deviation[0], c.events.noise(0).deviation[0]);
 }
 
-/// Events in which V and theta have white noise to which the model responds. The measured P and Q contain the
-/// share `carried` of it through the phasors and noise of their own; if `real`, V and theta truly moved, and
-/// P and Q contain the plant's response. Samples are at 30/s; `before` of them precede an event.
+/// Events in which V and theta have white noise to which the model responds. The measured P and Q contain
+/// noise of their own and, through the phasors, the fraction `carried` of that of V and theta. If `real`, V
+/// and theta truly moved, and P and Q contain the plant's response. Samples are at 30/s; `before` of them
+/// precede an event.
 struct Samples {
   int before = 30, all = kSamples, events = 3;
 };
@@ -145,20 +147,20 @@ TEST(VoltageNoise, IsDetectedInPAndQComputedFromPhasors) {
     const VoltageNoise found = voltage_noise(c.fits, c.events);
     EXPECT_NEAR(found.carried, carried, 0.15);
     EXPECT_NEAR(found.share, 1.0, 0.05);
-    // Noise of 4e-4 with an assumed deviation of 2e-3; 84 samples determine it to 15 %.
+    // Noise of 4e-4 with an assumed deviation of 2e-3 is a variance of 0.04; 84 samples determine it to 15 %.
     EXPECT_NEAR(found.own[static_cast<int>(playin::Output::Q)], 0.04, 0.3 * 0.04);
   }
 }
 TEST(VoltageNoise, IsEstimatedOnTheWholeRecordWithoutSwings) {
   const VoltageNoise found = voltage_noise(moving(1, false).fits, moving(1, false).events);
-  EXPECT_LT(found.doubt.maxCoeff(), 0.1);  // the pre-event segments alone determine it to 0.3
+  EXPECT_LT(found.doubt.maxCoeff(), 0.1);  // the pre-event segments alone would determine it to 0.3
   EXPECT_NEAR(found.variance[0], 1e-6, 3e-6 * found.doubt[0]);
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
 TEST(VoltageNoise, UsesCalmSegments_WhenThePreEventIsShort) {
   const Case c = moving(1, false, {.before = 6});
   const VoltageNoise found = voltage_noise(c.fits, c.events);
-  EXPECT_LT(found.doubt[1], 0.05);  // six bins alone determine it to 0.6
+  EXPECT_LT(found.doubt[1], 0.05);  // six frequency bins alone would determine it to 0.6
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
 TEST(VoltageNoise, CorrectsForMeanAndTrendOfShortSegments) {

@@ -65,8 +65,8 @@ TEST(Lines, FindsOscillationBelowTheChi2Limit) {
 TEST(Lines, FindsNoneInNoise) {
   for (unsigned seed = 1; seed <= 40; ++seed) {
     const Residuals c = with_wave(0.0, 0.37, seed);
-    // A sum of ten squares reaches 52, i.e. 20 above the penalty, at one of 400 frequencies in 40 residuals
-    // once in 500 such tests.
+    // In noise, a sum of ten squares exceeds 52 (20 above the penalty) at one of 400 frequencies of 40
+    // residuals once in 500 runs of this test.
     EXPECT_LT(strongest_line(c.fits, c.events).explains, thresholds::adequacy.line / 2) << seed;
   }
 }

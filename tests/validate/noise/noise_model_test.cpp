@@ -1,4 +1,5 @@
-// Noise models are values: measuring changes no event, and fits with different noise are never compared.
+// Noise models are values: a measurement of the noise changes no event, and fits with different noise models
+// are never compared.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -15,7 +16,7 @@ using fit::better, fit::criterion, fit::data_cost, fit::ExciterExample, fit::Fit
 struct NoiseModels : ::testing::Test {
   const ExciterExample example{0.2};
   const Fit first = example.fitted({"H"}, {.iterations = 2});
-  /// The same events with the noise measured once more through that fit.
+  /// The same events with the noise measured again with that fit.
   const WhitenedEvents again = example.events.with(measure_noise_through(
       {first.plant, example.model.conventions}, first.events, first.reduced_chi2(), example.events));
 

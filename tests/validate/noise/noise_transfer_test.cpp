@@ -39,7 +39,7 @@ TEST_F(NoiseTransferTest, DelayBetweenSamplesReducesTransfer) {
   EXPECT_NEAR(less_with(late(0.5)) / noise_transfer_.own(), 0.24, 0.03);
 }
 TEST_F(NoiseTransferTest, DelayOfAWholeSampleKeepsTransfer) {
-  // Up to the correlation of V and current of one sample.
+  // Apart from the correlation between V and current of the same sample.
   EXPECT_NEAR(less_with(late(1.0)) / noise_transfer_.own(), 0.0, 0.02);
 }
 TEST_F(NoiseTransferTest, LargerReactanceReducesTransfer) {

@@ -1,7 +1,7 @@
-// Extraction of every unit of every public case that runs: the plant equals the one in the grid, its file
-// reads back, it finds its operating point, and its response to the voltage of the case's simulation has the
-// same P and Q. The cases are not part of this repository; tests/README.md states where they are searched
-// for.
+// Extraction of every unit of every public case that can be simulated. The plant equals the one in the grid,
+// its file is read back unchanged, and it finds its operating point. Its response to the simulated voltage of
+// the case has the simulated P and Q. The cases are not part of this repository; tests/README.md states where
+// they are searched for.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ fs::path cases() { return sim::test::record_folder("../cases"); }
 
 struct Loaded {
   fs::path raw, dyr;
-  std::vector<std::string> ignored;  ///< unsupported models, by the names in the messages
+  std::vector<std::string> ignored;  ///< unsupported models, ignored by the names that the messages state
   sim::grid::Grid grid;
 };
 /// Loads a case as `simulate` does, with the options that the messages name.
@@ -107,8 +107,8 @@ std::string difference_from(const sim::plant::Plant& running, const sim::plant::
   return running.mva == taken.mva ? "" : "base";
 }
 
-/// Returns the first error of the plant's exported records; empty if they have its values, in as few digits
-/// as in manual input.
+/// Returns the first error of the plant's exported records; empty if the records have the plant's values,
+/// with no more digits than manual input has.
 std::string fault_of_export(const PlantModel& model) {
   Problems problems;
   const std::string text = dyr_text(model, {}, "plant.toml", problems);

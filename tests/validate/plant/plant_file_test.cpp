@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 
 PlantModel example() { return load_plant_model(test::source("configs/plants/ieee14_bus2.toml")); }
 
-/// Values that need all 17 digits, consistent because they differ little from the defaults.
+/// Values that need all 17 digits. They differ little from the defaults, so that they are consistent.
 std::vector<double> awkward(const sim::Effect& effect) {
   std::vector<double> p = effect.default_parameters();
   for (std::size_t i = 0; i < p.size(); ++i) {

@@ -204,7 +204,7 @@ TEST_F(PlantModelTest, RecognisesDataOnTheSystemBase) {
     text = replaced(std::move(text), "H = 6.54", std::string("H = ") + h);
     return replaced(std::move(text), "Xd = 1.8", std::string("Xd = ") + xd);
   };
-  const auto warnings = [&](std::string text) {  // proportional reactances satisfy the initial equations
+  const auto warnings = [&](std::string text) {  // reactances keep their ratios: the model initialises
     for (const auto& [name, value] : std::map<std::string, std::string>{{"Xq = 1.7", "Xq = 0.0189"},
                                                                         {"Xdp = 0.4", "Xdp = 0.0044"},
                                                                         {"Xqp = 0.6", "Xqp = 0.0067"},
@@ -219,7 +219,8 @@ TEST_F(PlantModelTest, RecognisesDataOnTheSystemBase) {
   EXPECT_THAT(load(replaced(example_text(), "H = 6.54", "H = 654")).warnings,
               ElementsAre(AllOf(HasSubstr("H = 654 s"), HasSubstr(": 0.1 to 20 s"), HasSubstr("toml:23"))))
       << "one slip is no other base";
-  // A smaller factor suffices for unusual values: unit 34 of a public IEEE 39-bus case, on 1000 MVA.
+  // A smaller factor between the bases suffices for values that are unusual anyway: unit 34 of a public IEEE
+  // 39-bus case, on 1000 MVA.
   EXPECT_THAT(load(on_system(example_text(), "2.6", "6.7")).warnings,
               Contains(AllOf(HasSubstr("H = 2.6 s and Xd = 6.7 pu"), HasSubstr("probably on another base"))));
   EXPECT_TRUE(load(on_system(example_text(), "2.6", "3.2")).warnings.empty());

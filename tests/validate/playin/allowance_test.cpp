@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kInterval = 1.0 / 60;
 
-/// States: a slow state shown by P; a lag of 0.02 s that drives it with a time constant of 6 s; one that
-/// drives it with 0.2 s; an unobservable state; a state that hardly drives it.
+/// States: 0: a slow state, observed in P; 1: a lag of 0.02 s that drives state 0 with a time constant of 6
+/// s; 2: a lag that drives it with 0.2 s; 3: an unobservable state; 4: a state that hardly drives state 0.
 LinearPlant plant() {
   LinearPlant p;
   p.A = Eigen::MatrixXd::Zero(5, 5);
@@ -32,7 +32,8 @@ TEST(Allowances, FollowTheSensitivityOfTheComparedChannels) {
   const auto all = allowances(plant(), std::vector{Output::P}, kInterval);
   ASSERT_EQ(all.size(), 5U);
   EXPECT_EQ(all[0], 1.0);
-  // Of a unit error of the lag, 0.02 s / 6 s reaches the slow state; of the next state, 0.02 s / 0.2 s.
+  // Of an error of state 1, a fraction of 0.02 s / 6 s reaches state 0; of an error of state 2, 0.02 s / 0.2
+  // s.
   EXPECT_EQ(all[1], kMostAllowance);
   EXPECT_NEAR(all[2], 0.2 / 0.02, 1.5);
   EXPECT_EQ(all[3], 1.0) << "what is not seen about the start may act behind a limit";

@@ -65,7 +65,8 @@ struct ComponentNoise {
   double V = 0, P = 0, speed = 0, Efd = 0, Pm = 0;
 };
 
-/// Returns the component's record, P, Q and Pm on 100 MVA. Only the record of a machine has an angle.
+/// Returns the component's record, with P, Q and Pm in pu on 100 MVA. Only the record of a machine has an
+/// angle.
 inline record::Record component_record(const ComponentCase& c, record::Component component,
                                        const ComponentNoise& noise = {}, unsigned seed = 7) {
   record::Record r;

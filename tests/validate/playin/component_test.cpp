@@ -60,7 +60,8 @@ TEST(ComponentTest, ExciterFedByTheFieldCurrentGivesTheSimulatedFieldVoltage) {
 TEST(ComponentTest, RecordedStabiliserReplacesTheModelledOne) {
   Case c = test::simulated_component(Words{"SEXS", "STAB1"});
   record::Record r = test::component_record(c, Component::exciter);
-  // STAB1 alone, through an exciter without dynamics: Efd = K (Vref - V + Vs).
+  // Output of STAB1, from the difference of two plants whose exciter has no dynamics: Efd = K (Vref - V +
+  // Vs).
   sim::plant::Plant with = component_of(c.plant(), Component::exciter), without = with;
   with.controls.back() = {with.controls.back().effect, {1.0, 0.0, 1.0, 0.0, -100.0, 100.0}};
   std::erase_if(without.controls, [](const auto& b) { return b.effect->slot == sim::Slot::stabiliser; });

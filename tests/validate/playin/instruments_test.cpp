@@ -66,7 +66,7 @@ TEST_F(InstrumentsTest, TransformerErrorsAreRemovedFromInputAndAppliedToOutput) 
   plant.measurements = chain;
   const VoltageCurve own(record_, switchings_), shown(seen, switchings_);
   PlaybackRun run = run_with(plant, seen, shown);
-  // The operating point as shown by the instruments.
+  // The initial P and Q as the instruments show them.
   const PlaybackRun plain = run_with(model_.plant, record_, own);
   const Complex factor = std::polar(1.02, 0.03) * std::conj(std::polar(0.99, -0.02));
   const Complex power = Complex(plain.start.P, plain.start.Q) * factor;
@@ -89,7 +89,7 @@ TEST_F(InstrumentsTest, LagOfTheFrequencyIsRemovedFromAnIntegratedAngle) {
   const Response plain = simulate_playback(run_with(model_.plant, record_, own));
   record::Record lagged = record_;
   lagged.angle = record::AngleSource::integrated;
-  double y = record_.theta.front();  // a lag of the frequency is one of its integral, which begins at rest
+  double y = record_.theta.front();  // the angle lags as its frequency does; it begins at rest
   const double left = std::exp(-record_.step() / kLag), a = record_.step() / kLag;
   for (std::size_t k = 1; k < record_.theta.size(); ++k) {
     const double from = record_.theta[k - 1], to = record_.theta[k];
@@ -122,8 +122,8 @@ TEST_F(InstrumentsTest, SkewShowsOnlyAtTheStep) {
   const Response plain = simulate_playback(run_with(plant, record_, curve));
   plant.measurements = {instrument("SKEW:skew=0.0166")};
   const Response late = observe(run_with(plant, record_, curve));
-  // The first sample of the fault is closer to the switching than the skew: it still shows the pre-fault
-  // current.
+  // The first sample of the fault follows the switching by less than the skew, so it still shows the
+  // pre-fault current.
   double largest = 0;
   int moved = 0;
   for (std::size_t k = 0; k < late.of(Output::P).size(); ++k) {
@@ -168,7 +168,8 @@ TEST_F(InstrumentsTest, SensitivitiesAgreeWithCentralDifferences) {
         worst = std::max(worst, std::abs(difference - at.sensitivities[d].value[static_cast<int>(o)][k]));
         largest = std::max(largest, std::abs(difference));
       }
-      // Next to a step the skewed curve has corners; a difference quotient over 2e-4 s spans them.
+      // Next to a step the skewed curve has corners, and the difference quotient with a step of 2e-4 s spans
+      // them.
       EXPECT_LE(worst, 2e-2 * largest + 1e-8) << "direction " << d << ", " << output_name(o);
       EXPECT_GT(largest, 0) << "direction " << d;
     }

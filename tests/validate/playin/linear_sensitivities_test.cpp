@@ -48,8 +48,8 @@ class LinearSensitivitiesTest : public ::testing::Test {
                           .linear_sensitivities = linear ? kShown : std::vector<Output>()};
     return simulate_playback(run, along);
   }
-  /// Every nonzero parameter, i.e. every one that a relative change moves, and every sensitivity parameter of
-  /// an event.
+  /// Every parameter with a nonzero value, since only that is moved by a relative change, and every
+  /// sensitivity parameter of an event.
   [[nodiscard]] std::vector<SensitivityParameter> all() const {
     std::vector<SensitivityParameter> along;
     const auto blocks = sim::plant::block_parameters(model_.plant);
@@ -115,7 +115,7 @@ TEST_F(LinearSensitivitiesTest, AgreesForTimeConstantsFarBelowASample) {
   parameter("SEXS", "TE") = 2e-4;
   EXPECT_LT(worst(all()), 0.03);
 }
-/// A field voltage at its ceiling moves with the ceiling; inputs that drive it further have no effect.
+/// A field voltage at its ceiling changes with the ceiling. Inputs that would drive it higher have no effect.
 TEST_F(LinearSensitivitiesTest, AtLimit) {
   add("SEXS");
   parameter("SEXS", "EMAX") = 2.2;
@@ -124,8 +124,9 @@ TEST_F(LinearSensitivitiesTest, AtLimit) {
   EXPECT_GT(std::ranges::count_if(Efd, [](double e) { return e > 2.2 - 1e-6; }), 20);
   EXPECT_LT(worst(all()), 0.06) << "the trajectory itself leaves the ceiling a little earlier";
 }
-/// The regulator meets its limits for milliseconds after each switching, within a step. Linearised at the
-/// ends of such steps only, the sensitivity to a switching time was wrong by nine times its size.
+/// The regulator is at its limits for milliseconds after each switching, within an integration step.
+/// Linearised at the ends of such steps only, the sensitivity to a switching time was wrong by nine times its
+/// size.
 TEST_F(LinearSensitivitiesTest, OfRegulatorThatMeetsItsLimits) {
   for (const char* name : {"IEEEG1", "PSS2B", "ESST4B"}) add(name);
   parameter("ESST4B", "VMMAX") = 1.1;  // with the default, two limits act at once

@@ -8,7 +8,8 @@
 namespace swingbank::validate::playin {
 namespace {
 
-/// An exciter simulated open loop with its closed-loop input signals has its closed-loop response.
+/// An exciter simulated in open loop, with the input signals of the closed loop, has the response of the
+/// closed loop.
 TEST(OpenLoop, ReproducesTheClosedLoopResponse) {
   const fit::ExciterExample example(0.2);
   const event::FitEvent& e = example.events.front();
@@ -41,7 +42,8 @@ TEST(OpenLoop, ReproducesTheClosedLoopResponse) {
   EXPECT_GT(other, 0.1 * moved);
 }
 
-/// An infeasible operating point empties only its own column.
+/// A batch member with an infeasible operating point has an empty column; the columns of the other members
+/// are unaffected.
 TEST(OpenLoop, IsolatesInfeasibleMembersOfABatch) {
   const fit::ExciterExample example(0.2);
   const event::FitEvent& e = example.events.front();

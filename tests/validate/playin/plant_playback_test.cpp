@@ -51,7 +51,7 @@ class PlantPlaybackTest : public ::testing::Test {
       double t = quiet.t.front();
       Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(kOutputs, 2);  // difference, size
       for (std::size_t k = 0; k < moved.value[0].size(); ++k) {
-        constexpr int kParts = 2000;  // of a sample interval: explicit steps, accurate to 1e-4
+        constexpr int kParts = 2000;  // explicit steps per sample interval, accurate to 1e-4
         for (const double h = (quiet.t[k] - t) / kParts; t < quiet.t[k] - h / 2; t += h)
           x += h * (plant.A * x + plant.B * u);
         t = quiet.t[k];
@@ -63,7 +63,7 @@ class PlantPlaybackTest : public ::testing::Test {
         }
       }
       for (int o = 0; o < kOutputs; ++o)
-        // The step's own curvature and the error of the explicit steps.
+        // The tolerance covers the curvature over the step and the error of the explicit steps.
         EXPECT_LE(worst(o, 0), 2e-3 * worst(o, 1) + 1e-10) << output_name(static_cast<Output>(o));
     }
   }
@@ -166,7 +166,7 @@ TEST_F(PlantPlaybackTest, SensitivitiesToNuisanceParameters) {
                         {.kind = Kind::angle, .scale = 1e-5},
                         {.kind = Kind::speed, .scale = 1e-6}});
 }
-/// A frequency without the steps of the angle, and the same voltage with them.
+/// An angle integrated from the frequency, which lacks its steps, and the same voltage with the steps.
 TEST_F(PlantPlaybackTest, TurnRestoresTheMissingAngleStep) {
   const double lacks[] = {0.3, -0.5};  // [rad]
   record::Record turned = record_;
@@ -195,7 +195,7 @@ TEST_F(PlantPlaybackTest, TurnRestoresTheMissingAngleStep) {
     }
   EXPECT_GT(least, 0.1);
 }
-/// Newton's method solves for the current of a GENTPJ, and a second one for its terminal behind the
+/// One Newton iteration solves for the current of a GENTPJ, a second one for its terminal voltage behind the
 /// transformer.
 TEST_F(PlantPlaybackTest, SensitivitiesWithTransformerAndSaturatedStator) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");

@@ -44,8 +44,8 @@ const test::Simulated& genrou() {
 }
 
 TEST(PlayInTest, ReproducesEverySimulatedGenrou) {
-  // Spline error at 480/s: 5/384 h^4 V'''' with V'''' about 0.05 pu/(0.05 s)^4, through 1/X'' of about 4:
-  // below 1e-8 pu.
+  // Spline error at 480/s: 5/384 h^4 V'''' with V'''' about 0.05 pu/(0.05 s)^4, times 1/X'' of about 4. This
+  // is below 1e-8 pu.
   EXPECT_LT(playback_error(genrou(), 1, true), 1e-7);
 }
 
@@ -57,8 +57,8 @@ TEST(PlayInTest, ReproducesEverySimulatedGentpjBehindATransformer) {
 }
 
 /// Adds an exciter of high gain to every machine. After the fault its field voltage changes at hundreds of
-/// pu/s and reaches a close ceiling within milliseconds: a corner inside a step that error control cannot
-/// resolve.
+/// pu/s and reaches a close ceiling within milliseconds: this is a corner inside an integration step that the
+/// error control cannot resolve.
 void put_fast_exciters(sim::grid::Grid& grid) {
   for (auto& plant : grid.plants)
     plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.3, 10.0, 300.0, 0.02, -1.0, 3.5}});
@@ -89,8 +89,8 @@ TEST(PlayInTest, ErrorFallsWithTheRate) {
 }
 
 /// Largest interpolation error of V between samples of one segment, by polynomials through `points`
-/// neighbours and by the spline of play-in. From the switching to the end of the run; samples at 480/s are
-/// the reference.
+/// neighbours and by the spline of play-in. Evaluated from the fault's end to the end of the run. Samples at
+/// 480/s are the reference.
 struct VoltageError {
   double polynomial = 0, spline = 0;
 };
@@ -135,9 +135,10 @@ TEST(PlayInTest, InterpolationErrorFallsWithOrderAndRate) {
     EXPECT_LT(error[1], error[0]);
     EXPECT_LT(error[2], error[1]);
     EXPECT_LT(spline,
-              2 * error[1]);  // of the order of the cubic; through all points, not four, it is no worse
+              2 * error[1]);  // the spline has the order of the cubic; it uses all points, not four, and is
+                              // no worse
     // Half the step divides the error by 2^order: 4, 16, 64. The largest error lies at a segment's end, where
-    // all points are on one side and move with the step; about half of the factor is certain.
+    // all points are on one side and move with the step. Only about half of the factor is certain there.
     for (int i = 0; i < 3; ++i) {
       if (before[i] > 0) {
         EXPECT_GT(before[i] / error[i], 0.45 * std::pow(4.0, i + 1));
@@ -177,7 +178,7 @@ TEST(PlayInTest, StaysAtRest_WithoutAnEvent) {
   }
   const Playback back = play_in({genrou().grid.plants[0], genrou().grid.conventions}, r, VoltageCurve(r, {}));
   EXPECT_LT(worst(back.P, r.P),
-            1e-10);  // only rounding: a mean of equal numbers and an exact initialisation
+            1e-10);  // only rounding: the start is a mean of equal numbers, and the initialisation is exact
   EXPECT_LT(worst(back.Q, r.Q), 1e-10);
 }
 
@@ -191,11 +192,12 @@ TEST(PlayInTest, OffNominalFrequencyRotatesTheFrame) {
   const Playback turning = play_in({s.grid.plants[3], s.grid.conventions}, r,
                                    VoltageCurve(r, test::exact_switchings(s, 3, false)));
   EXPECT_NEAR(turning.start.drift, drift, 1e-6);
-  // Phasors of 120/s turn by 1 mrad per sample; splines through them differ by h^4 of that: a few 1e-6 pu.
+  // At 120/s the phasors turn by 1 mrad per sample. The spline error of this rotation, of order h^4, is a few
+  // 1e-6 pu.
   EXPECT_LT(worst(turning.P, still.P), 1e-5);
 }
 
-/// Ten seconds before a switching: an angle of this time series, rising P and V, and noise.
+/// Ten seconds before a switching, with this angle, rising P and V, and noise.
 record::Record before_an_event(double (*angle)(double t)) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise(0, 1e-5);

@@ -48,7 +48,7 @@ class PlaybackBatchTest : public ::testing::Test {
   std::optional<VoltageCurve> curve_;
 };
 
-/// At a tolerance of 1e-5 per step the two differed by at most 1.9e-4.
+/// At a tolerance of 1e-5 per step, batch and single playback differed by at most 1.9e-4.
 TEST_F(PlaybackBatchTest, AgreesWithSinglePlants) {
   const auto all = plants(11);  // more than the size of a SIMD batch
   std::vector<PlaybackRun> runs;

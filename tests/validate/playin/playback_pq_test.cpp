@@ -50,10 +50,10 @@ Errors errors(const test::Simulated& s, int stride) {
 }
 
 TEST(PowerPlaybackTest, ReproducesVoltageAndAngleOfEveryGenrou) {
-  // Bolted fault in the middle of the grid; close to it the lower of two solutions is the true one.
-  // Extrapolating P and Q to the steps costs as much as that of V (1.5e-9 pu at 480/s,
-  // validate/playin/README.md), times 1/X''. An undamped speed error e turns the angle by 377 e T: two more
-  // orders of magnitude after 8 s.
+  // Bolted fault in the middle of the grid. Close to the fault, the lower of the two voltage solutions is the
+  // true one. Extrapolating P and Q to the steps causes the error of extrapolating V (1.5e-9 pu at 480/s,
+  // validate/playin/README.md), times 1/X''. An undamped speed error e turns the angle by 377 e T, which is
+  // two more orders of magnitude after 8 s.
   const Errors e = errors(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1), 1);
   EXPECT_LT(e.V, 1e-7);
   EXPECT_LT(e.speed, 1e-8);
@@ -64,7 +64,8 @@ TEST(PowerPlaybackTest, ReproducesVoltageAndAngleBehindTransformers) {
   const Errors e = errors(test::simulate("ieee39_genrou", sim::Conventions::psse(), 16, 2.0, 2.1, 480, {},
                                          test::put_behind_transformers),
                           1);
-  // Behind a transformer V is lower in the fault and more sensitive to P and Q: 5.9e-6 (2.8e-6 with GENROU).
+  // Behind a transformer V is lower in the fault and more sensitive to P and Q. The error of V is 5.9e-6 pu
+  // (2.8e-6 pu with GENROU instead of GENTPJ).
   EXPECT_LT(e.V, 2e-5);
   EXPECT_LT(e.speed, 1e-8);
   EXPECT_LT(e.theta, 1e-5);
@@ -85,7 +86,8 @@ TEST(PowerPlaybackTest, DetectsWrongReactance) {
   const record::Record r = test::record_of(s, 2, 1);
   sim::plant::Plant wrong = s.grid.plants[2];
   wrong.machine.p[static_cast<std::size_t>(wrong.machine.effect->parameter_index("Xdp"))] *= 1.2;
-  // 20 % of X'd, times a change of current of some tenths, is more than a hundredth of the voltage.
+  // 20 % of X'd, times a change of the current of some tenths of a pu, changes the voltage by more than 0.01
+  // pu.
   EXPECT_GT(worst_of(play_back({wrong, s.grid.conventions}, r, test::exact_switchings(s, 2, false)).V, r.V),
             0.01);
 }

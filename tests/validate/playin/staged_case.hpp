@@ -67,8 +67,8 @@ inline sim::plant::Plant unloaded_plant() {
   return plant;
 }
 
-/// Response of that plant in an open circuit to a step `dVref` of its reference at 2 s: an independent
-/// implementation of the d axis, integrated by the classical Runge-Kutta method.
+/// Response of unloaded_plant() in an open circuit to a step `dVref` of its reference at 2 s, by an
+/// independent implementation of the d axis and the classical Runge-Kutta method.
 inline record::Record open_circuit_record(double dVref, double noise = 0, double field_noise = 0) {
   const sim::plant::Plant plant = unloaded_plant();
   const auto p = [&](const char* name) {

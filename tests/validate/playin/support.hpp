@@ -80,7 +80,7 @@ inline Simulated with_fault(Simulated s, int bus, double rate, Complex z) {
   return s;
 }
 
-/// The same for a grid of configs/networks; `change` modifies the grid before the simulation.
+/// Simulates a fault in a grid of configs/networks; `change` modifies the grid before the simulation.
 inline Simulated simulate(const std::string& name, sim::Conventions conventions, int bus, double t_on,
                           double t_off, double rate = 480.0, Complex z = {},
                           const std::function<void(sim::grid::Grid&)>& change = {}) {

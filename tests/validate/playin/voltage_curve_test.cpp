@@ -37,9 +37,9 @@ TEST(VoltageCurveTest, IsExactForCubicsUpToTheSteps) {
     EXPECT_NEAR(curve(1, t).real(), 0.5 + t * t / 20, 1e-13);  // extrapolated back to 1.0
   for (const double t : {1.5, 1.51, 2.99}) EXPECT_NEAR(curve(2, t).real(), 0.9 + t / 50, 1e-13);
 }
-/// The angle of a lagged frequency, theta = a sin(w t), advanced by T: a sin(w t) + T a w cos(w t). The slope
-/// at the spline's ends, the worst knots, errs by about a w^4 h^3 / 4 at knots h = 0.05 s apart, here 8e-4
-/// rad times 1 / T.
+/// The angle of a lagged frequency, theta = a sin(w t), advanced by T: a sin(w t) + T a w cos(w t). The
+/// spline's derivative is least accurate at its ends: with knots h = 0.05 s apart it errs by about a w^4 h^3
+/// / 4, here 8e-4 rad times 1 / T.
 TEST(VoltageCurveTest, AdvancesTheAngle) {
   constexpr double kLead = 0.1, kA = 0.4, kW = 5.0;
   record::Record r = stepped();
@@ -77,7 +77,7 @@ TEST(VoltageCurveTest, PassesThroughOneSidedValues) {
 TEST(VoltageCurveTest, MovedSwitchingTimesGiveTheSameCurveAsNewOnes) {
   const record::Record r = stepped();
   const VoltageCurve first(r, {{.time = 1.01}, {.time = 1.51}});
-  for (const double on : {1.02, 0.98}) {  // between the same samples, and across one
+  for (const double on : {1.02, 0.98}) {  // between the same two samples, and on the other side of a sample
     const std::vector<Switching> to = {{.time = on}, {.time = 1.54}};
     const VoltageCurve moved = first.moved(r, to), own(r, to);
     ASSERT_EQ(moved.segments(), 3);

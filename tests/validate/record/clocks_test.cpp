@@ -109,7 +109,7 @@ TEST(ClockTest, ReadsTheFirstOfSeveralTimes) {
   const Record r = parse_record(record_text("t_s,Elapsed Time (s)", both), "r.csv", kTestBase);
   expect_thirty_per_second(r);
   EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("'t_s'"), HasSubstr("'Elapsed Time (s)'"))));
-  // A battery's state of charge is no time column.
+  // A battery's state of charge (SOC) is not taken for a time column.
   const auto charge = [](double t) { return fmt::format("80,{:.7f}", t); };
   expect_thirty_per_second(parse_record(record_text("SOC,t_s", charge), "r.csv", kTestBase));
 }
@@ -140,7 +140,7 @@ TEST(ClockTest, ReportsTooFewDigits) {
       ElementsAre(AllOf(HasSubstr("rounded to 0.1 s"), HasSubstr("spreadsheet"), HasSubstr("mm:ss.0"))));
   EXPECT_THAT(clock_faults(record_text("timestamp", [](double) { return "1.77237E+12"; })),
               ElementsAre(AllOf(HasSubstr("too few digits"), HasSubstr("1.77E+12"))));
-  // Ten samples a second are read in the same format.
+  // The same format is accepted at ten samples a second.
   const auto text = record_text(
       "Time", [](double t) { return fmt::format("59:{:04.1f}", 30 * t / 10 + 50); }, 60);
   EXPECT_NEAR(parse_record(text, "r.csv", kTestBase).rate(), 10, 1e-6);

@@ -19,7 +19,7 @@ inline constexpr double kPi = std::numbers::pi, kTurn = 2 * kPi;
 struct Channel {
   std::string id, phase, component, unit;
   double a = 0.001, b = 0;
-  std::function<double(double)> value;  ///< of time [s], on the side given by `side`
+  std::function<double(double)> value;  ///< value at a time [s]; at a step, on the side given by `side`
   double skew_us = 0, primary = 1, secondary = 1;
   char side = 'P';
 };

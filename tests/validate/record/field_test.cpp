@@ -213,7 +213,7 @@ TEST(LostFramesTest, AreInterpolatedAndMarked) {
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("6 of 900 samples"), HasSubstr("0.2 s"))));
 }
 // A swing of a machine with an instrument's noise: the interpolated values are as accurate as samples. A
-// straight line across the step next to the gap would be off by 2e-3.
+// straight line across the gap and the step beside it would be off by 2e-3.
 TEST(LostFramesTest, AreInterpolatedWithinTheNoiseDuringASwing) {
   constexpr double kNoise = 1e-4;
   const auto angle = [](double t) { return 0.2 * std::sin(9.0 * t) * std::exp(-0.3 * t); };

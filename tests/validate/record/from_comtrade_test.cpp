@@ -60,7 +60,7 @@ TEST(RecordComtradeTest, WaveformsBecomePhasors) {
 }
 TEST(RecordComtradeTest, RejectsHarmonicsAndImbalance) {
   const Machine m{.harmonic = 0.05, .negative = 0.03};
-  // A cycle of exactly 80 samples is orthogonal to both.
+  // A window of one cycle of exactly 80 samples suppresses both harmonic and negative sequence.
   EXPECT_LT(largest_error(waveforms(m).read(), m), 1e-5);
 }
 TEST(RecordComtradeTest, OffNominalFrequency) {
@@ -69,8 +69,8 @@ TEST(RecordComtradeTest, OffNominalFrequency) {
   EXPECT_LT(largest_error(waveforms(m).read(), m), 3e-4);
 }
 TEST(RecordComtradeTest, AcceptsFractionalSamplesPerCycle) {
-  // 3,000/s at 60 Hz: 50 samples a cycle; 2,500/s: 41.67, with partial weight at the ends; ripple of the
-  // order (2 pi/41.67)^2 / 24.
+  // 3,000/s at 60 Hz: 50 samples a cycle; 2,500/s: 41.67, with partial weights at the window's ends, which
+  // cause a ripple of the order of (2 pi/41.67)^2 / 24.
   EXPECT_LT(largest_error(waveforms({}, 3000, 3000).read(), {}), 1e-5);
   EXPECT_LT(largest_error(waveforms({}, 2500, 2500).read(), {}), 2e-3);
 }

@@ -19,8 +19,8 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// Bytes of the file written by `write`: of its signature, and of descriptions whose damage crashes HDF5 1.10
-/// (or, once, makes it loop endlessly).
+/// Positions in the file written by `write`: the signature, and descriptions whose damage crashes HDF5 1.10
+/// (or, in one case, makes it loop endlessly).
 constexpr std::size_t kDamaged[] = {0, 6505, 6530, 6555, 6580, 6600, 10695, 10725};
 
 class RecordHdf5Test : public ::testing::Test {
@@ -82,7 +82,7 @@ TEST_F(RecordHdf5Test, RefusesFilesWithoutARun) {
   EXPECT_THAT(faults("-missing.h5"), ElementsAre(HasSubstr("run.h5-missing.h5")));
 }
 
-// 44 TB, which neither the file nor any memory has.
+// The file claims 44 TB, which neither the file nor any memory has.
 TEST_F(RecordHdf5Test, RefusesMoreSamplesThanTheFileContains) {
   write("swingbank-run-1");
   std::string bytes = read_bytes(file_);

@@ -28,7 +28,7 @@ double phasor_error(const Record& r) {
   }
   return worst;
 }
-constexpr double kRounding = 1e-4;  // half a step of the integers, in rad
+constexpr double kRounding = 1e-4;  // half a step of the integers [rad]
 
 TEST(RecorderLeniency, DateOfRevision1991HasTheMonthFirst) {
   Writer w = phasors(1991);

@@ -87,14 +87,14 @@ TEST_F(Reduced, UnneededInputHasNoEvidence) {
   }
 }
 
-/// The cost of the inferred series itself equals the residual of the inference.
+/// If the inferred series itself is the input, its cost equals the residual of the inference.
 TEST_F(Reduced, CostOfInferredSeriesEqualsItsResidual) {
   const ReducedPlant field(*reduction_, event::InputKind::field);
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(reduction_->knots()), still = Eigen::VectorXd::Zero(1);
   const double inferred = reduction_->inference().chi2,
                there = field.costs(reduction_->series(event::InputKind::field), still)[0],
                without = field.costs(none, still)[0];
-  EXPECT_LT(there, 1.01 * inferred);  // tolerance: one last step that the inference did not take
+  EXPECT_LT(there, 1.01 * inferred);  // tolerance: the inference may stop one step before the optimum
   EXPECT_GT(there, 0.9 * inferred);
   EXPECT_GT(without, 3 * there);
 }
@@ -122,8 +122,8 @@ TEST_F(Reduced, QuadraticModelMatchesTheCost) {
   }
 }
 
-/// Linearised about a plant that has the exciter: the exciter's own response costs the plant's residual, and
-/// a zero series costs several times as much.
+/// Linearised about a plant that has the exciter: the cost of the exciter's own response equals the plant's
+/// residual, and the cost of a zero series is several times as large.
 TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
   for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {
     if (h.name != "SEXS") continue;
@@ -140,7 +140,8 @@ TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
     const Eigen::VectorXd own = about.responses(event::InputKind::field, {h.plant}) -
                                 about.responses(event::InputKind::field, {model_->plant});
     EXPECT_NEAR((own - about.series(event::InputKind::field)).norm(), 0, 1e-9);
-    // Only the events' states are free; they stay near their prior means and within their ranges.
+    // Only the events' states (start and switching times) are free; they stay near their prior means and
+    // within their ranges.
     const double chi2 = about.inference().chi2;
     double freely = chi2;
     for (const EventSensitivities& s : about.inference().events)
@@ -153,8 +154,8 @@ TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
   }
 }
 
-/// A freely scaled change of the plant costs as much as the free parameter that it changes; a scale of zero
-/// changes nothing.
+/// The cost with a freely scaled change of one parameter equals the cost with that parameter free. With a
+/// scale of zero the change has no effect.
 TEST_F(Reduced, FreeChangeActsAsAParameter) {
   Inference about = reduction_->inference();
   const auto free = about.free;
@@ -180,8 +181,8 @@ TEST_F(Reduced, FreeChangeActsAsAParameter) {
   EXPECT_NEAR(by_change, by_parameter, 0.05 * (fixed - by_parameter));  // accuracy of the linearisation
 }
 
-/// A wrong inertia is identified in closed loop, with all other parameters linear, as a fit of the whole
-/// plant finds it.
+/// Identification in closed loop, with all other parameters linearised, finds the same wrong inertia as a fit
+/// of the whole plant.
 TEST_F(Reduced, ClosedLoopFindsWhatAFitFinds) {
   const hypothesis::Hypothesis h = true_exciter();
   auto others = fit::free_parameters(h.plant, 0.2);
@@ -227,8 +228,9 @@ TEST_F(Reduced, TrueExciterRanksFirst) {
   EXPECT_EQ(std::ranges::min(costs).second, "SEXS");
 }
 
-/// The default pickup level of an over-excitation limiter lies above the field current, and few draws act. An
-/// idle limiter costs less than most that act, and is no optimum.
+/// The default pickup level of an over-excitation limiter lies above the field current, so that few of the
+/// drawn limiters act. The cost of an idle limiter is below that of most limiters that act, but it must not
+/// be reported as an optimum.
 TEST_F(Reduced, OptimaOfALimiterAct) {
   const hypothesis::Hypothesis exciter = true_exciter();
   const auto with_exciter = exciter.under_test();

@@ -159,7 +159,7 @@ TEST_F(TablesTest, UserExperimentHasItsTitle) {
   json r = result("ieee14_from_39", "mlp", 0, 0.4);
   r["title"] = "trained on IEEE 39, tested on IEEE 14";
   write("a", r);
-  write("b", result("mine", "mlp", 0, 0.4));  // of a release without this entry
+  write("b", result("mine", "mlp", 0, 0.4));  // written by a release without this entry
   EXPECT_THAT(
       make_tables(read(), {}).markdown,
       AllOf(HasSubstr("## ieee14_from_39: trained on IEEE 39, tested on IEEE 14\n"), HasSubstr("## mine\n")));
@@ -238,8 +238,8 @@ TEST_F(TablesTest, ParametersShowMedianAndWorst) {
   EXPECT_THAT(row(table, "H"), ElementsAre("H", "s", "2.02", "0.2", "0.6", "#32"));
   EXPECT_THAT(row(table, "Xdpp"), ElementsAre("Xdpp", "pu", "0", "constant", "constant", "–"));
 }
-/// Results with training on eighths of the rows; the error falls with their square root and is 0.54 with all
-/// rows.
+/// Results with training on 1/8 to all of the rows; the MSE falls with the square root of the rows and is
+/// 0.54 with all rows.
 void write_sizes(const std::function<void(const std::string&, const json&)>& write) {
   for (const double share : {0.125, 0.25, 0.5, 1.0}) {
     json r = result("V", "cnn", 30, 0.1 / std::sqrt(share));
@@ -267,14 +267,14 @@ TEST_F(TablesTest, FitsPowerLawToTrainingSizes) {
                     HasSubstr("| training rows | 500 – 4000 |"), HasSubstr("0.54 (0.1) ¹")));
 }
 TEST(PowerLawTest, IntervalsUseStudentsDistribution) {
-  // ln y = 1, 2, 4 at ln x = 0, 1, 2: slope 1.5, scatter sqrt(1/6), Student's quantile 12.706
+  // ln y = 1, 2, 4 at ln x = 0, 1, 2: exponent 1.5, scatter sqrt(1/6), Student's quantile 12.706
   const double e = std::exp(1.0);
   const PowerLaw law({{1, e}, {e, e * e}, {e * e, std::exp(4.0)}});
   EXPECT_NEAR(law.exponent(), 1.5, 1e-12);
   EXPECT_NEAR(law.exponent_interval().second - 1.5, 12.706204736174694 * std::sqrt(1.0 / 6 / 2), 1e-9);
   EXPECT_NEAR(std::log(law.interval(e).second / law.at(e)), 12.706204736174694 * std::sqrt(1.0 / 6 / 3),
               1e-9);
-  EXPECT_FALSE(law.reaches_interval(1.0));  // a slope of 0 cannot be ruled out
+  EXPECT_FALSE(law.reaches_interval(1.0));  // an exponent of 0 cannot be ruled out
   const PowerLaw exact({{1, 8}, {10, 4}, {100, 2}, {1000, 1}});
   ASSERT_TRUE(exact.reaches_interval(0.5));
   EXPECT_NEAR(exact.reaches_interval(0.5)->second, 10'000, 1e-3);

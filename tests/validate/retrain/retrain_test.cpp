@@ -1,4 +1,4 @@
-// Configs of the two networks, and the comparison of their estimates.
+// Configs of the two networks, without and with the added effect, and the comparison of their estimates.
 #include "validate/retrain/retrain.hpp"
 
 #include <fmt/format.h>
@@ -110,7 +110,8 @@ TEST(Retrain, WithoutDatasetPlacesThePlantAtTheRecordsOperatingPoint) {
   EXPECT_EQ(plant->machine.p, x.before.plant.machine.p);
   EXPECT_EQ(plant->mva, x.before.plant.mva);
   const auto& start = x.added.prepared[0].start;
-  // The voltage of the large machine is chosen for that; the power flow converges to some 1e-8 pu.
+  // The voltage of the large machine is chosen so that the plant has its recorded P and Q. The power flow
+  // converges to some 1e-8 pu.
   EXPECT_NEAR(plant->generation.real(), start.P, 1e-6);
   EXPECT_NEAR(plant->generation.imag(), start.Q, 1e-6);
   Problems problems;

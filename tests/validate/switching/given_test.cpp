@@ -1,4 +1,4 @@
-// Switching times given by the user, and that of a breaker.
+// Switching times given by the user, and the opening time of a breaker.
 #include "validate/switching/given.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// Time at which a signal leaves its level, end of the steady state, and steps of the voltage.
+// Sample at which a signal leaves its level, end of the steady state, and steps of the voltage.
 #include "validate/switching/steady.hpp"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ TEST(PowerStep, IsFoundAboveTheNoise) {
   for (const std::size_t at : {std::size_t{4}, std::size_t{9}, std::size_t{40}})
     EXPECT_EQ(before_power_step(powers(at, 0.012), 75), at);
   EXPECT_EQ(before_power_step(powers(9, 0.012), 60), 9U);
-  EXPECT_EQ(before_power_step(powers(40, 0.012), 30), 29U);  // later than the given sample
+  EXPECT_EQ(before_power_step(powers(40, 0.012), 30), 29U);  // the step is after the given sample
 }
 TEST(PowerStep, IgnoresNoiseAndSwings) {
   EXPECT_EQ(before_power_step(powers(0, 0), 75), 74U);

@@ -47,8 +47,8 @@ inline record::Record filtered(record::Record r) {
 }
 
 /// A fault at `on` for `length` [s] behind a triangular window of half-width `half` [s] (0: none). The fault
-/// voltage is `V`; a subtransient of `fell` pu follows both steps. The angle steps by `turn` [rad], then
-/// turns at 2 rad/s.
+/// voltage is `V`; a subtransient decay of `fell` pu follows both steps. The angle steps by `turn` [rad],
+/// then turns at 2 rad/s.
 inline record::Record behind(double half, double on, double length, double V, double fell, double turn) {
   const double off = on + length;
   const auto since = [](double t, double begin) { return std::exp(-(t - begin) / 0.03); };

@@ -34,7 +34,8 @@ constexpr Filter kClassM30 = {306 / 32.0 * kCycle, [](double u, double half) {
                                 const double x = 4 * kPi * 5.02 * u;
                                 return std::sin(x) / x * (0.54 + 0.46 * std::cos(kPi * u / half));
                               }};
-/// A transducer's lag of 12 ms; the assumed window falls off to both sides.
+/// A transducer's lag of 12 ms, which weights only the past. The reconstruction assumes a window that
+/// decreases on both sides.
 constexpr Filter kLag = {4 * kCycle, [](double u, double) { return u < 0 ? std::exp(u / 0.012) : 0.0; }};
 Complex averaged(const Fault& fault, const Filter& filter, double t) {
   constexpr int kSteps = 4000;
@@ -79,8 +80,8 @@ TEST(VoltageReconstruction, RestoresShortFault) {
   EXPECT_EQ(window.shape(), FilterWindow::Shape::triangle);
   EXPECT_NEAR(window.half(), kCycle, 1e-9);
   ASSERT_EQ(events.front().switchings.size(), 2u);
-  // The fault's voltage deviates by 3e-5 between chord and arc, the cubics before and after by less. Against
-  // steps of 0.25 pu over a window of 17 ms that shifts a switching time by some microseconds.
+  // A chord in place of the curved voltage of the fault errs by 3e-5 pu, the cubics before and after it by
+  // less. With steps of 0.25 pu over a window of 17 ms, this shifts a switching time by some microseconds.
   EXPECT_NEAR(events.front().switchings[0].time, kOn, 5e-5);
   EXPECT_NEAR(events.front().switchings[1].time, Fault{}.off, 5e-5);
   EXPECT_LT(worst_within(events.front()), 2e-3);
@@ -89,14 +90,14 @@ TEST(VoltageReconstruction, RestoresShortFault) {
 TEST(VoltageReconstruction, IsInsensitiveToNoise) {
   std::vector<SwitchedRecord> events = {event(2e-4)};
   reconstruct_voltage(events);
-  // One filtered sample determines a switching time to 2e-4 pu / (0.25 pu / 17 ms); with the fault's slopes
-  // free, to a few times as much.
+  // One filtered sample determines a switching time to 2e-4 pu / (0.25 pu / 17 ms). The error is a few times
+  // as large, because the slopes of V during the fault are free.
   EXPECT_NEAR(events.front().switchings[0].time, kOn, 3e-4);
   EXPECT_NEAR(events.front().switchings[1].time, Fault{}.off, 3e-4);
   EXPECT_LT(worst_within(events.front()), 5e-3);
 }
-/// Both steps of a fault of three samples share the samples between them; the probability of the switching
-/// times has many local maxima.
+/// The samples of a three-sample fault contain parts of both steps, so the likelihood of the switching times
+/// has many local maxima.
 TEST(VoltageReconstructionFull, FindsTimesOfShortFaultAtAnyOffset) {
   for (const double phase : {0.0, 0.25, 0.5, 0.75})
     for (const double length : {0.05, 0.055, 0.06}) {

@@ -1,5 +1,4 @@
-// Detection of switchings among the steps of the voltage: steps, even small ones, but no swings, however
-// fast.
+// Detection of switchings in the voltage: steps are found, even small ones, but swings are not, however fast.
 #include "validate/switching/voltage_steps.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +24,8 @@ std::vector<Switching> switchings_of(const record::Record& r) {
 }
 
 TEST(FindSwitchings, IgnoresFastSwing) {
-  // 4 rad within a second, up to 5.4 rad/s: a step of 0.09 pu differs from the second-next ones by 0.016 pu.
+  // The angle swings by 4 rad within a second, at up to 5.4 rad/s. A change of 0.09 pu per sample differs
+  // from the second-next changes by 0.016 pu.
   const record::Record r = record_of([](double) { return 1.0; },
                                      [](double t) { return 0.1 + 2 * (1 + std::erf((t - 4) / 0.42)); });
   for (const auto& s : switchings_of(r)) ADD_FAILURE() << "switching at " << s.time << " s";
@@ -63,8 +63,8 @@ TEST(FindSwitchings, IgnoresSwingNextToSharpSteps) {
   EXPECT_NEAR(found[1].time, 3.1, 1.0 / 60);
   EXPECT_EQ(std::ranges::count(filtered_samples, 1), 0);
 }
-/// A fault that looks sharp does not outweigh another that is clearly filtered, if the samples of both are
-/// more probable behind a window.
+/// Of two faults, one looks unfiltered and one is clearly filtered. The record counts as filtered if the
+/// samples of both are more probable with a filter window.
 TEST(FindSwitchings, DecidesBySamplesWhenRecordsDisagree) {
   const record::Record looks_sharp = behind(kOneCycle, 3.01, 0.1, 0.9, 0.04, -0.05),
                        open = behind(kOneCycle, 3.0, 0.1, 0.97, 0.04, 0.02);
@@ -97,7 +97,7 @@ TEST(FindSwitchings, DoesNotTakeSubtransientDecayForAFilter) {
       EXPECT_NEAR(found[1].time, 3.1 + on / 30, 0.51 / 30);
     }
 }
-/// The same steps without decay behind a triangular window of two cycles, at 30/s and 60/s: a filtered step
+/// Steps of a fault without decay behind a triangular window of two cycles, at 30/s and 60/s. A filtered step
 /// with samples on one side only is not taken for a decay.
 TEST(FindSwitchings, RecognisesTriangularFilter) {
   for (const double rate : {30.0, 60.0})

@@ -218,8 +218,8 @@ TEST_F(SystemCompare, SameGridIsAdequate_BehindFilters) {
     EXPECT_LE(std::ranges::count(e.left_out, 1), 14) << e.record.name;
   }
 }
-/// A simulation 64 times as dense as the record, switched half-way between two of its samples; a triangle
-/// over two cycles.
+/// A simulation with 64 times the record's sampling rate, switched half-way between two of its own samples.
+/// The filter is a triangle over two cycles.
 constexpr double kTick = 1.0 / 3840, kOn = 7692.5 * kTick, kOff = 8096.5 * kTick;
 constexpr int kWindow = 63, kFineness = 64;
 
@@ -232,18 +232,18 @@ TEST_F(SystemCompare, SameGridIsAdequate_BehindDeclaredFiltersAtLowNoise) {
   const SystemComparison c = compare_system(load_system(system("4:2.0:2.1", given)));
   EXPECT_TRUE(c.adequacy.adequate) << c.adequacy.sentence;
   for (const auto& e :
-       c.terminals) {  // a cycle of 50 Hz and a quarter of a sample to either side of two steps
+       c.terminals) {  // excluded: a cycle of 50 Hz and a quarter of a sample on either side of two steps
     EXPECT_GE(std::ranges::count(e.left_out, 1), 4) << e.record.name;
     EXPECT_LE(std::ranges::count(e.left_out, 1), 6) << e.record.name;
   }
-  EXPECT_NEAR(c.terminals[3].channels[3].whole.rms, 2e-4, 0.12 * 2e-4);  // as SameGridIsAdequate
+  EXPECT_NEAR(c.terminals[3].channels[3].whole.rms, 2e-4, 0.12 * 2e-4);  // as in SameGridIsAdequate
 }
 TEST_F(SystemCompare, DeclaredFiltersGiveSwitchingTimes) {
   record({.attached = same, .t_on = kOn, .t_off = kOff, .window = kWindow, .fine = kFineness});
   const auto found = system("[event]", "[event]\nswitching_times = \"found\"");
   const SystemComparison undeclared = compare_system(load_system(found));
   EXPECT_NEAR(undeclared.switching_times[0], kOn,
-              2e-3);  // from the samples after the filtered ones: 0.6 and 0.4 ms off
+              2e-3);  // estimated from the samples after the filtered ones: errors of 0.6 and 0.4 ms
   EXPECT_NEAR(undeclared.switching_times[1], kOff, 2e-3);
   instruments = "instruments = [\"PMUFILTER\"]\n";
   const SystemComparison c =
@@ -278,7 +278,7 @@ TEST_F(SystemCompare, NamesChangedGovernorFirst_WhenAllTerminalsSwing) {
 
 TEST_F(SystemCompare, GridErrorIsAttributedToNoPlant) {
   record({.attached = same});
-  // The simulation has the fault behind an impedance, the records have not.
+  // In the simulation the fault is behind an impedance, in the records it is bolted.
   const SystemCase s = load_system(system("4:2.0:2.1\"", "4:2.0:2.1:0.01:0.02\""));
   const SystemComparison c = compare_system(s);
   EXPECT_FALSE(c.adequacy.adequate);
@@ -310,7 +310,7 @@ TEST_F(SystemCompare, JudgesOrSubtractsSteadyStateDifference) {
   record({.attached = same, .shift_V = 0.003});
   const SystemComparison judged = compare_system(load_system(system()));
   EXPECT_FALSE(judged.adequacy.adequate);
-  EXPECT_NEAR(judged.initial[4 * 3], -0.003, 1e-4);  // of terminal two, V [pu]; noise of the mean 2e-5
+  EXPECT_NEAR(judged.initial[4 * 3], -0.003, 1e-4);  // V of terminal two [pu]; noise of the mean 2e-5
   const SystemComparison shifted =
       compare_system(load_system(system("[compare]", "[compare]\nsteady_state = \"shift\"")));
   for (const auto& e : shifted.terminals)
@@ -356,7 +356,7 @@ TEST_F(SystemCompare, ReportsBadInput) {
     EXPECT_THAT(test::messages([&, &change = change] { load_system(system(change.first, change.second)); }),
                 Contains(HasSubstr(words)))
         << change.first;
-  // Before the start of the run, and without a pre-event.
+  // A switching before the start of the run, and one without a pre-event period.
   EXPECT_THAT(test::messages([&] { compare_system(load_system(system("4:2.0:2.1", "4:-1:2.1"))); }),
               Contains(HasSubstr("a run starts at 0 s")));
   EXPECT_THAT(test::messages([&] { compare_system(load_system(system("4:2.0:2.1", "4:0.01:2.1"))); }),

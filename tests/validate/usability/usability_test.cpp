@@ -60,8 +60,8 @@ TEST(LeastDampedOscillation, ThereIsNoneInAnExponentialOrInNoSignal) {
     EXPECT_FALSE(least_damped_oscillation({std::vector<double>(samples, 1.0)}, 30, 1e-9).has_value());
 }
 
-/// 2 H s^2 + D s + w0 Ks = 0 with Ks = E' E cos(delta) / X after the step of the infinite bus by -1 %, which
-/// lowers its reactance by 1 % as well.
+/// 2 H s^2 + D s + w0 Ks = 0 with Ks = E' E cos(delta) / X. The step lowers the voltage E of the infinite bus
+/// and its reactance by 1 %.
 TEST(Usability, ClassicalMachineSwingsAsTheSwingEquation) {
   constexpr double H = 3, D = 10, Xdp = 0.3;
   const plant::PlantModel model = classical(H, D, Xdp);

@@ -1,5 +1,5 @@
-// User-defined models for an input that no known effect explains: ranked by its time series, written as files
-// of user-defined models, found in records, and accepted only if they predict events outside the fit.
+// User-defined models for an inferred input that no known effect explains. They are ranked by the input's
+// time series, written as files, found in records, and accepted only if they predict events outside the fit.
 #include "validate/user_model_search/search.hpp"
 
 #include <fmt/format.h>
@@ -65,7 +65,7 @@ TEST(UserModelCandidates, LimitedSpeedModelRanksFirst) {
   const auto limited = std::ranges::find(ranked, "limited", &UserModelCandidate::family);
   ASSERT_NE(limited, ranked.end());
   EXPECT_EQ(limited->signal, "speed");
-  // The grid's widths are a factor of two apart; the limit itself follows from least squares.
+  // The search grid's widths are a factor of two apart. The limit L follows from least squares.
   EXPECT_NEAR(value_of(*limited, "L"), -0.02, 0.003);
   EXPECT_NEAR(std::log2(value_of(*limited, "w") / 0.001), 0.0, 1.0);
 }
@@ -75,11 +75,11 @@ TEST(UserModelCandidates, FindsOscillationWithItsFrequency) {
   });
   const auto best = user_model_candidates(fit::InputKind::torque, traces, kLevel).front();
   EXPECT_EQ(best.family, "periodic");
-  EXPECT_EQ(best.signal, "time");  // not since the event, whose time differs between the records
+  EXPECT_EQ(best.signal, "time");  // not time since the event, which differs between the records
   EXPECT_NEAR(value_of(best, "f"), 0.47,
-              0.005);  // a quarter of the frequency that turns the phase once over the record
-  EXPECT_NEAR(value_of(best, "A"), 0.01, 0.001);    // 10 %: its start is not on the grid
-  EXPECT_NEAR(value_of(best, "start"), 4.0, 0.25);  // half the grid's step
+              0.005);  // a quarter of the frequency error that turns the phase by one cycle over the record
+  EXPECT_NEAR(value_of(best, "A"), 0.01, 0.001);    // 10 %, because the true start is not on the search grid
+  EXPECT_NEAR(value_of(best, "start"), 4.0, 0.25);  // half the step of the search grid
 }
 TEST(UserModelCandidates, PulseDelayCountsFromTheEvent) {
   const auto traces = traces_with([](const UserModelTrace& e, double, double t) {
@@ -89,7 +89,7 @@ TEST(UserModelCandidates, PulseDelayCountsFromTheEvent) {
   const auto best = user_model_candidates(fit::InputKind::field, traces, kLevel).front();
   EXPECT_EQ(best.family, "pulse");
   EXPECT_EQ(best.signal, "time since the voltage deviation");
-  // The knots are 0.1 s apart.
+  // The knots of the inferred input are 0.1 s apart.
   EXPECT_NEAR(value_of(best, "delay"), 1.0, 0.1);
   EXPECT_NEAR(value_of(best, "length"), 1.5, 0.1);
   EXPECT_NEAR(value_of(best, "A"), 0.05, 0.005);
@@ -128,12 +128,12 @@ TEST(UserModelText, EveryFileReproducesTheRankedTimeSeries) {
           difference += std::pow(time_series[e][k] - user_model.time_series[e][k], 2);
           size += std::pow(user_model.time_series[e][k], 2);
         }
-      // The ranking samples at 20/s with a step at each edge of the user-defined model; a trigger acts within
-      // some 10 ms. For a sawtooth above 1 Hz, whose every step is affected, most of a tenth of the mean
-      // square may differ.
+      // The ranking evaluates a model at 20/s and puts a step at each of its edges; a trigger acts within
+      // some 10 ms. A sawtooth above 1 Hz has many steps, so up to three tenths of its mean square may
+      // differ.
       const bool wave = user_model.family.starts_with("periodic, ");
-      // A user-defined model that explains next to nothing is never fitted; its amplitudes are kept away from
-      // zero.
+      // A user-defined model that explains almost nothing is never fitted. Its amplitudes are kept away from
+      // zero, so its time series may differ.
       if (user_model.explained > 0.1) {
         EXPECT_LT(difference, (wave ? 0.3 : 0.05) * size) << user_model_toml(user_model, "test");
       }
@@ -267,7 +267,7 @@ TEST(UserModelSearchFull, FindsOscillation) {
       EXPECT_NEAR(p.value, 0.7, 4 * p.error);
     }
 }
-/// A torque that differs between events follows no user-defined model.
+/// A random torque that differs between events follows no user-defined model.
 TEST(UserModelSearchFull, RejectsRandomTorque) {
   Case c({1, 2, 3}, nullptr, [](int event, playin::PlaybackRun& run) {
     std::mt19937_64 generator(static_cast<unsigned>(100 + event));
