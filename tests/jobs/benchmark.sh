@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# swingbank benchmark: records of a simulation (CSV, and the same as PSCAD output) and another model as reference; the
-# errors computed independently, the limits and exit codes, and bad input.
+# swingbank benchmark: the reference is the record of a simulation (as CSV and as PSCAD output) or another model. The
+# errors are computed independently; limits, exit codes and bad input are tested.
 # shellcheck disable=SC2154 # set by lib.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
@@ -60,7 +60,7 @@ TOML
 benchmark --model right.toml --records dip.csv vref.csv --accept narrow.toml --out same >said || fail "its own run: $(cat said)"
 grep -q '^2 of 2 tests are within the limits narrow' said || fail "no verdict: $(cat said)"
 
-# another inertia: errors as computed from the samples, exit code 3
+# another inertia: the errors equal those computed here from the samples, exit code 3
 code=0
 benchmark --model wrong.toml --records dip.csv vref.csv --accept narrow.toml --out other --json >printed.json || code=$?
 ((code == 3)) || fail "exit code $code of a wrong model"
@@ -203,7 +203,7 @@ grep -q 'sise' "$work/stderr" || fail "the unknown key is not reported with it"
 sed 's/4.5\]/45.0]/; s/7.5\]/75.0]/' tests.toml >long.toml
 refuses "a window after the record" "window post of test 'dip'" refused --model right.toml --tests long.toml --records dip.csv vref.csv
 grep -q "window post of test 'vref'" "$work/stderr" || fail "the second window is not reported with it"
-# The results fit their schema; other content does not.
+# The results satisfy their schema; changed content does not.
 for result in same other against currents; do fits_schema_of benchmark $result/benchmark.json; done
 sed 's/"passed": [0-9]*/"passed": -1/' other/benchmark.json >altered.json
 (fits_schema_of benchmark altered.json) 2>/dev/null && fail "the schema accepts a negative number of tests"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Three cases of the blind test, each with an exciter or a governor that the model lacks. Calibration biases the
-# parameters to compensate; a diagnosis of the biased model must give the same verdict as one of the original.
+# parameters to compensate. The diagnosis of the biased model must give the same verdict as that of the original model.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 
 "$swingbank" blind-test --config "$SWINGBANK_SOURCE/configs/blind/cases.toml" --out "$work/run" --make 3 --seed 16 --size 6 \

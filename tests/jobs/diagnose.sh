@@ -53,7 +53,7 @@ shares = {e["name"]: e["probability"] for e in r["probabilities"]}
 assert shares["SEXS"] == max(shares.values()), shares
 PYTHON
 
-# a signal after the first sentence: the fits until then are reported, with a separate exit code
+# a signal after the first sentence: the fits made so far are reported, with a separate exit code
 "$swingbank" diagnose --model "$model" --records "$one" "$two" --power-only --threads 1 --out "$work/ended" \
   >"$work/ended.txt" 2>"$work/told" &
 diagnosing=$!

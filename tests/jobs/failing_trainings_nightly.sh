@@ -25,7 +25,7 @@ command() {
   esac
   run+=(--out "$work/out")
 }
-# Allocations before main, and in LibTorch's initialisation: no message is possible there.
+# If an allocation fails before main or in LibTorch's initialisation, no message is possible.
 read -r _ early < <(counts 0 "$work/none" "$SWINGBANK_BIN/swingbank-train" --experiment "$work/split.toml" --print table)
 declare -A calls
 for kind in train fold folds; do

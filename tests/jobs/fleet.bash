@@ -5,7 +5,7 @@ mkdir "$work/records"
 # Six seconds contain the fault and the first swings, and take half the time.
 for k in 1 2 3 4; do head -361 "$SWINGBANK_SOURCE/configs/records/record-example/avr_ev$k.csv" >"$work/records/e$k.csv"; done
 cp "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" "$work/model.toml"
-# the same with the true exciter: nothing is missing, so the diagnosis is short
+# the model with the true exciter: nothing is missing, so the diagnosis is short
 {
   cat "$work/model.toml"
   printf '[exciter]\neffect = "SEXS"\nTAoverTB = 0.1\nTB = 10.0\nK = 100.0\nTE = 0.05\nEMIN = -4.0\nEMAX = 5.0\n'

@@ -56,7 +56,7 @@ leaves_nothing() {
   [[ -z $left ]] || fail "left behind: $left"
 }
 
-# fits_schema FILE...: JSON results have the common part that docs/reference/report.schema.json describes
+# fits_schema FILE...: the JSON results satisfy docs/reference/report.schema.json, which describes their common part
 fits_schema() { fits_schema_of report "$@"; }
 
 # fits_schema_of NAME FILE...: the same check against docs/reference/NAME.schema.json

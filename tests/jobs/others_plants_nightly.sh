@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Plants of public PSS/E cases with their original values. One control at a time is removed from the model; the
-# records are three simulated faults with noise. The 95 % set of the diagnosis must contain the removed control, or
+# Plants of public PSS/E cases with their original values. One control at a time is removed from the model; the records
+# are three simulated faults with noise. The diagnosis's set of 95 % probability must contain the removed control, or
 # the effect of which it is a variant. SWINGBANK_PLANTS=REGEX selects plants. At most one may be missed: bus 31 of
 # griddyn_ieee39 is at its exciter's limit.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"

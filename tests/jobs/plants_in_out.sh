@@ -71,7 +71,7 @@ sed '/^bus = 2/d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" >"$work/no
 refuses "no bus number" "no bus number" "$swingbank" export --model "$work/no_bus.toml"
 misused "no bus" "bus" "$swingbank" plant --raw "$raw" --dyr "$dyr"
 
-# One line for each model, not for each record.
+# The message has one line for each model, not for each record.
 for bus in 31 33 34; do echo "$bus 'STRANGE' 1 1 2 3 /"; done >>"$work/more.dyr"
 refuses "grouped" "unknown model 'STRANGE' of '1' at bus 30 and 3 more" "$swingbank" simulate --raw "$raw" --dyr "$work/more.dyr" --out "$work/x.csv"
 (($(grep -c STRANGE "$work/stderr") == 1)) || fail "not grouped: $(cat "$work/stderr")"

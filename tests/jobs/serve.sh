@@ -7,7 +7,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/serve.bash"
 record=$SWINGBANK_SOURCE/configs/records/record-example/avr_ev4.csv
 serve "$record"
 base=${url%/*/} # http://127.0.0.1:PORT
-# answer ARGUMENT...: the status of a request, its content in ./content
+# answer ARGUMENT...: prints the status of a request; its content goes to ./content
 answer() { curl -s --max-time 60 -o content -w '%{http_code}' "$@"; }
 # expect STATUS ARGUMENT...
 expect() {
@@ -37,7 +37,7 @@ channels = json.load(open("compared/compare.json"))["events"][0]["channels"]
 print(*("%.6g" % (c["whole"]["rms_pu"] * c["units_in_pu"]) for c in channels))' >expected
 cmp changed expected || fail "the page says $(<changed), compare says $(<expected)"
 
-# nobody else: no token, another token, another page, another host
+# nobody else gets an answer: without the token, with another token, from another page or host
 expect 403 "$base/"
 expect 403 "$base/$(printf '0%.0s' {1..32})/"
 expect 403 "$base/api/open" -d '{}'
@@ -72,7 +72,7 @@ expect 400 "$api/curves?s=$session&k=0&e=99"
 expect 200 "$api/preview?s=$session" -d '{"seq":7,"step":0,"event":0,"values":{"GENROU.H":5}}'
 expect 204 "$api/preview?s=$session" -d '{"seq":6,"step":0,"event":0,"values":{"GENROU.H":5}}'
 
-# 200 connections that say nothing do not stop the page
+# 200 idle connections do not stop the page
 port=${base##*:}
 python3 - "$port" "${url#"$base"}" <<'PYTHON'
 import http.client, socket, sys, time

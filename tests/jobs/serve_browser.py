@@ -68,7 +68,7 @@ page.save_screenshot(f"{folder}/first.png")
 assert page.execute_script("return document.getElementById('charts').getBoundingClientRect().bottom <= innerHeight"), \
     "the curves of P and Q are not on the first screen"
 
-# a cell of the error map enlarges its channel: Q was chosen, the first cell is of P
+# a click on a bin of the error map enlarges its channel: Q was selected, the first bin belongs to P
 event = next(at[0] for at, c in chips().items() if "chosen" in c[0])
 page.execute_script("document.querySelector('#bins button').click()")
 until("the channel of the cell", lambda: "chosen" in chips()[event, 0][0], 20)
@@ -94,10 +94,10 @@ until("redo", lambda: rms(event, 0) != before, 20)
 ActionChains(page).send_keys("z").perform()
 until("undo again", lambda: rms(event, 0) == before, 20)
 
-# a keyboard is enough: event 4, hold it out, diagnose, add the first candidate
+# the keyboard suffices: select event 4, hold it out, diagnose, add the first candidate
 ActionChains(page).send_keys("4").send_keys("h").perform()
 until("event 4", lambda: "Event 4" in text("title"), 20)
-time.sleep(1)  # the curves of the step before must not move on into this event's charts
+time.sleep(1)  # the curves of the previous step must not appear in this event's charts
 first_samples = page.execute_script("return charts_of_test().map((d) => [d[2], d[3]].map((s) => Array.from(s)))")
 assert all(ghost == model for ghost, model in first_samples), "the curves of another event are shown"
 assert one("hold").is_selected(), "event 4 is not held out"
@@ -130,7 +130,7 @@ assert "swingbank add SEXS" in text("command") and "--hold-out avr_ev4.csv" in t
 # the candidates stay: another one can be tried from the diagnosed model
 assert "SEXS" in text("candidates"), "the candidates are gone"
 
-# a key pressed while a changed value is compared acts on the model with that value
+# a key pressed while the comparison with a changed value runs acts on the model with that value
 page.execute_script("const s = document.getElementById('slider-SEXS.K'); s.value = 900;"
                     "for (const e of ['input', 'change']) s.dispatchEvent(new Event(e));")
 ActionChains(page).send_keys("s").perform()
@@ -162,7 +162,7 @@ assert "submitted model" in text("steps") and "(verification)" in text("chips"),
 ActionChains(page).send_keys("4").perform()
 until("the held-out event", lambda: one("hold").is_selected(), 20)
 
-# save; the page says what and where
+# save; the page states the saved files and their folder
 ActionChains(page).send_keys("s").perform()
 until("saving", lambda: "model.toml" in text("saved"), 60)
 assert "“+ SEXS”" in text("saved") and "replacing the existing files" in text("saved"), text("saved")

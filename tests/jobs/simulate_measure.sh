@@ -45,7 +45,7 @@ for integrator in ("reference", "lanes"):
     assert worst_v < 2e-5, worst_v
     assert worst_i < 1e-4, worst_i
     assert max(true["2.speed_pu"]) > 1e-3 and abs(seen["2.f_hz"][0] - 60) < 1e-6
-    # In steady state a bus moves with its machine: within a few mHz.
+    # In steady state the frequency of a bus equals that of its machine within a few mHz.
     assert abs(seen["2.f_hz"][-2] - 60 * (1 + seen["2.speed_pu"][-2])) < 0.05
 
 true, one = table("true_reference"), table("one")

@@ -43,7 +43,7 @@ cmp <(told float32-memory) <(told again) || fail "another time, other results"
 train seed --simulate "$work/float32/tiny_data.toml" --draw-seed 8
 cmp -s <(told float32-memory) <(told seed) && fail "the seed changes nothing"
 
-# Folds in two processes that share the rows, with noise.
+# Folds in two processes that divide the rows among them, with noise.
 for from in disk memory; do
   rows=("$work/float32/data")
   [[ $from == disk ]] || rows=(--simulate "$work/float32/tiny_data.toml")

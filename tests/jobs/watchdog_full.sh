@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A launcher that hangs after its processes have died is ended from outside; one with living processes is left alone.
+# The watchdog ends a launcher that hangs after its processes have died, and does not end a launcher with living
+# processes.
 # shellcheck disable=SC2154,SC2034 # set by lib.bash; read by run_saving.bash
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$SWINGBANK_SOURCE/jobs/run_saving.bash"

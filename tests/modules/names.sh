@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A file's namespace is its folder: swingbank::validate::fit in validate/fit and validate/fit/detail. The two basic
-# modules have their parent's name: base is swingbank, sim/core is swingbank::sim. A folder of modules contains no
-# source. JSON is read through base/json.hpp, which alone includes the library.
+# modules use their parent's namespace: base uses swingbank, sim/core uses swingbank::sim. A folder that contains
+# modules contains no source itself. JSON is read through base/json.hpp, which alone includes the library.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 sources=('base/*.?pp' 'sim/*.?pp' 'mpi/*.?pp' 'train/*.?pp' 'validate/*.?pp' 'research/*.?pp')

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Readers of a dataset need no MPI: mpi/store makes no MPI call, neither in its sources nor in its object code.
+# Programs that read a dataset need no MPI, because mpi/store makes no MPI call. Both its sources and its object code
+# are checked.
 set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 failed=0

@@ -80,7 +80,7 @@ class PointOfTwoUnits(unittest.TestCase):
         self.assertEqual(point.others, ["IEEE 14, bus 2"])
         (record,) = point.records([self.both])
         alone = swingbank.Record(RECORDS[0], self.plant)
-        noise = self.plant.play(alone)["P"].noise  # twice the record's noise, less a modelled response without noise
+        noise = self.plant.play(alone)["P"].noise  # noise of the doubled record minus that of a simulated response without noise
         self.assertLess(np.std(record["P"] - alone["P"][:len(record)]), 2 * noise)
         self.assertGreater(np.std(alone["P"]), 5 * noise)
 

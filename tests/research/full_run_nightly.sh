@@ -16,7 +16,7 @@ grep -q '| V | mlp | 0 | 31 | quick | .* | new |' "$out/2026-02-01/report.md" ||
 grep -q '^### Table V' "$out/2026-02-01/report.md" || fail "no table in the report: $(cat "$out/2026-02-01/report.md")"
 [[ ! -e $out/2026-02-01/tiny/data && ! -e $out/2026-02-01/tiny/training-data ]] || fail "the events were to be removed"
 
-# Interrupted after the events are complete, the night continues and trains with its own seed.
+# If the nightly run is interrupted after its events are complete, it continues and trains with its own seed.
 bash "$SWINGBANK_SOURCE/jobs/run_experiment.sh" --experiment "$work/tiny.toml" --preset quick --stage generate \
   --out "$out/2026-02-02/tiny" >/dev/null 2>&1
 touch "$work/before"
@@ -27,7 +27,7 @@ grep -q 'fewer than 3 runs, no verdict' "$out/2026-02-02/report.md" || fail "rep
 first=$(find "$out/2026-02-01" -name '*gru*gen30.json') second=$(find "$out/2026-02-02" -name '*gru*gen30.json')
 [[ $(basename "$first") != "$(basename "$second")" ]] || fail "both nights trained with the same seed"
 
-# A night with a blind case: it is made, judged and counted.
+# A nightly run with a blind case: the case is made, judged and counted.
 BLIND=1 night 2026-02-02 "$work/tiny.toml" >"$work/log" 2>&1 || fail "night with a blind case: $(tail "$work/log")"
 grep -q '^1 cases judged, 0 without a verdict' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
 
@@ -57,7 +57,7 @@ for wanted in '^| short: events | [0-9]' '^| short: training, seed 204890 |' '^|
   grep -q "$wanted" "$work/short/2026-02-05/report.md" || fail "no '$wanted' in: $(cat "$work/short/2026-02-05/report.md")"
 done
 
-# Four hours suffice for the tests, unless an earlier night took longer for them. A night interrupted in its tests
+# Four hours suffice for the tests, unless they took longer in an earlier nightly run. A run interrupted in its tests
 # does not count.
 for told in '2026-02-06 99999 all passed' '2026-02-07 1 broken off'; do
   read -r date took end <<<"$told"
