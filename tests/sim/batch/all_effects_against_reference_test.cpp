@@ -14,7 +14,7 @@ namespace {
 using test::Difference;
 using test::Draws;
 
-constexpr double kLimit = 1e-4;  ///< relative to max(1 pu, the channel's swing): required limit
+constexpr double kLimit = 1e-4;  ///< required limit, relative to max(1 pu, the channel's swing)
 /// Weight of Efd differences in float: the limit for Efd is then 1e-3, because an exciter amplifies the
 /// rounding of the voltage by its gain (REXS: 2,800).
 constexpr double kEfdInFloat = 0.1;

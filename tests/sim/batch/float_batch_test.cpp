@@ -21,7 +21,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr double kFloatLimit = 1e-4;  ///< relative to max(1 pu, the swing): required of all lanes
+constexpr double kFloatLimit = 1e-4;  ///< required limit, relative to max(1 pu, the swing)
 
 grid::Grid round_rotors() { return test::configured_grid("ieee39_dataset_genrou", Conventions::psse()); }
 

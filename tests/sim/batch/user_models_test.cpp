@@ -34,7 +34,7 @@ Trajectory batch_run(const grid::Grid& grid, int lanes, double tolerance = 1e-6)
 
 TEST(UserModelInBatch, SexsAsUserDefinedModelEqualsTheCompiledOne) {
   const std::vector<std::vector<double>> sets = {{0.1, 10.0, 100.0, 0.1, -4.0, 5.0},   // reaches the ceiling
-                                                 {0.5, 2.0, 20.0, 0.05, -10.0, 10.0},  // does not
+                                                 {0.5, 2.0, 20.0, 0.05, -10.0, 10.0},  // does not reach it
                                                  {1.0, 0.0, 50.0, 0.2, -4.0, 4.0}};    // lead-lag bypassed
   bool reached = false;
   for (const auto& p : sets) {

@@ -1,5 +1,5 @@
-// ESST1A: transfer function against its diagram, both places of the stabiliser, limits, field-current
-// limiter.
+// ESST1A: transfer function against its diagram, both input points of the stabiliser signal, limits,
+// field-current limiter.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {

@@ -40,7 +40,7 @@ TEST(ExciterExst1, ErrorIsLimitedBeforeTheLeadLag) {
   ControlBench bench("EXST1", kExst1Values);
   bench.in.dVref = 5.0;
   bench.run(100.0);
-  EXPECT_NEAR(bench.state("Va"), 150.0 * 0.2, 1e-5);  // exp(-100 / 5) of 30 is 6e-8, feedback is washed out
+  EXPECT_NEAR(bench.state("Va"), 150.0 * 0.2, 1e-5);  // 30 exp(-100 / 5) = 6e-8; feedback is washed out
   bench.in.dVref = -5.0;
   bench.run(100.0);
   EXPECT_NEAR(bench.state("Va"), -150.0 * 0.1, 1e-5);

@@ -28,7 +28,7 @@ TEST(GovernorGast, TemperatureLimitsThePowerAndReleases) {
   EXPECT_NEAR(bench.out().Tm, 0.9 + 0.3 * 0.02, 1e-12);
   bench.in.speed = 0.0;
   bench.run(60.0);
-  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-8);  // exp(-60/3) of 0.1
+  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-8);  // remainder: 0.1 exp(-60/3)
 }
 
 TEST(GovernorGast, FuelValveStopsAtItsLimitsWithoutWindUp) {

@@ -69,7 +69,7 @@ TEST(GovernorGgov1, LoadLimiterRegulatesToItsReferenceAndReleases) {
   ControlBench bench = bench_with({{"Ldref", 0.9}, {"Dm", 0.0}, {"Rselect", 0.0}, {"Aset", 99.0}});
   bench.in.speed = -0.003;  // isochronous: the governor would open to Vmax
   bench.run(200.0);
-  EXPECT_NEAR(bench.out().Tm, 0.9, 1e-6);  // exp(-200/10) of 0.3, about
+  EXPECT_NEAR(bench.out().Tm, 0.9, 1e-6);  // remainder: about 0.3 exp(-200/10)
   // The governor's integral is at Vmax = 1 pu. At speed +0.003 its output is 1 - 8 * 0.003 and falls by
   // 1.5 * 0.003 per second: it takes over the stroke, then 0.8 pu, after (0.2 - 0.024)/0.0045 = 39.1 s.
   bench.in.speed = 0.003;
@@ -84,9 +84,10 @@ TEST(GovernorGgov1, IntegralsDoNotWindUp) {
   bench.in.speed = -0.01;
   bench.run(300.0, 5e-3);
   EXPECT_EQ(bench.state("integral"), 1.0);
-  EXPECT_NEAR(bench.state("valve"), 1.0, 1e-12);  // a lag after it
+  EXPECT_NEAR(bench.state("valve"), 1.0, 1e-12);  // a lag behind the integral
   EXPECT_EQ(bench.state("load"), 1.0);
-  bench.in.speed = 0.02;  // stroke = 1 - 8 * 0.02 - 1.5 * 0.02 t without delay, valve at most 0.1 pu/s
+  // the stroke falls without delay to 1 - 8 * 0.02 - 1.5 * 0.02 t, the valve at 0.1 pu/s
+  bench.in.speed = 0.02;
   bench.run(0.5);
   EXPECT_NEAR(bench.state("valve"), 1.0 - 0.1 * 0.5, 1e-9);
   EXPECT_NEAR(bench.state("integral"), 1.0 - 1.5 * 0.02 * 0.5, 1e-9);
@@ -133,7 +134,7 @@ TEST(GovernorGgov1, ExhaustTemperatureFollowsSpeedByNegativeDm) {
   const double valve = 0.8 / 1.5 + 0.2;
   bench.in.speed = -0.04;
   bench.run(60.0);
-  EXPECT_NEAR(bench.state("exhaust"), valve * std::pow(0.96, -0.5), 1e-6);  // exp(-60/5) of 0.015
+  EXPECT_NEAR(bench.state("exhaust"), valve * std::pow(0.96, -0.5), 1e-6);  // 0.015 exp(-60/5)
   EXPECT_NEAR(bench.out().Tm, 0.8, 1e-9);  // the power then does not depend on speed
 }
 
@@ -145,7 +146,7 @@ TEST(GovernorGgov1, PowerControllerReturnsTheLoadToItsSetPoint) {
     bench.in.P = bench.out().Tm;
     bench.run(0.01, 0.01);
   }
-  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-5);  // exp(-600 s Kimw/R) and less
+  EXPECT_NEAR(bench.out().Tm, 0.8, 1e-5);  // remainder: at most exp(-600 s Kimw/R)
   EXPECT_NEAR(bench.state("mw"), 0.001, 1e-5);
 }
 

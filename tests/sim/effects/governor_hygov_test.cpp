@@ -28,7 +28,7 @@ TEST(GovernorHygov, PermanentDroop) {
   ControlBench bench("HYGOV", kHygovValues);
   bench.in.speed = -0.005;
   bench.run(600.0, 5e-3);
-  // The slowest mode has about r Tr / R = 30 s: exp(-20) of 0.1 pu.
+  // The slowest mode has a time constant of about r Tr / R = 30 s; its remainder is 0.1 pu exp(-20).
   EXPECT_NEAR(bench.state("gate"), 0.8 / 1.2 + 0.08 + 0.005 / 0.05, 1e-8);
   EXPECT_NEAR(bench.out().Tm, 0.8 + 1.2 * 0.1 + 0.4 * 0.005 * bench.state("gate"), 1e-8);
 }

@@ -39,7 +39,7 @@ TEST(GovernorIeeeg1, DroopBeyondTheDeadBand) {
   EXPECT_LT(bench.largest_derivative(), 1e-14);
   bench.in.speed = -0.0026;
   bench.run(200.0, 5e-3);
-  EXPECT_NEAR(bench.out().Tm, 0.8 + 20.0 * 0.002, 1e-10);  // exp(-200/7) of 0.04 is 2e-14
+  EXPECT_NEAR(bench.out().Tm, 0.8 + 20.0 * 0.002, 1e-10);  // remainder: 0.04 exp(-200/7) = 2e-14
 }
 
 TEST(GovernorIeeeg1, ValveRespectsRateLimitsAndLeavesItsEndWithoutDelay) {

@@ -26,7 +26,7 @@ TEST(GovernorTgov1, DroopAndTurbineDamping) {
   ControlBench bench("TGOV1", values);
   bench.in.speed = -0.005;
   bench.run(30.0);
-  EXPECT_NEAR(bench.out().Tm, 0.8 + 0.005 / 0.05 + 0.5 * 0.005, 1e-12);  // exp(-30 / 0.8) is below
+  EXPECT_NEAR(bench.out().Tm, 0.8 + 0.005 / 0.05 + 0.5 * 0.005, 1e-12);  // exp(-30 / 0.8) is smaller
 }
 
 TEST(GovernorTgov1, DeadBandSubtractsItsWidthFromTheSpeed) {
@@ -37,7 +37,7 @@ TEST(GovernorTgov1, DeadBandSubtractsItsWidthFromTheSpeed) {
   EXPECT_EQ(bench.largest_derivative(), 0.0);
   bench.in.speed = -0.0016;
   bench.run(30.0);
-  EXPECT_NEAR(bench.out().Tm, 0.8 + 0.001 / 0.05, 1e-12);  // exp(-30 / 0.8) is below
+  EXPECT_NEAR(bench.out().Tm, 0.8 + 0.001 / 0.05, 1e-12);  // exp(-30 / 0.8) is smaller
 }
 
 TEST(GovernorTgov1, ValveStopsAtItsLimitsAndLeavesThemWithoutDelay) {

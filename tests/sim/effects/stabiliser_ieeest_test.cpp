@@ -93,7 +93,7 @@ TEST(StabiliserIeeest, LimitsDoNotWindUpTheWashout) {
   bench.run(0.5);
   EXPECT_EQ(bench.out().Vs, 0.1);
   bench.run(40.0);
-  EXPECT_NEAR(bench.out().Vs, 0.0, 1e-7);  // washed out: exp(-40 / 2) of 0.45 pu
+  EXPECT_NEAR(bench.out().Vs, 0.0, 1e-7);  // washed out: 0.45 pu exp(-40 / 2)
   bench.in.speed = 0.0;
   bench.run(0.5);
   EXPECT_EQ(bench.out().Vs, -0.05);

@@ -130,7 +130,7 @@ TEST(StabiliserPss2, InputAndOutputLimitsActAndRelease) {
   EXPECT_EQ(bench.out().Vs, at_limit.out().Vs);  // inputs are clamped at their limits
   EXPECT_EQ(bench.out().Vs, 0.06);
   bench.run(60.0);
-  EXPECT_NEAR(bench.out().Vs, 0.0, 1e-6);  // washed out: exp(-60 / 3.3) of 0.07 pu
+  EXPECT_NEAR(bench.out().Vs, 0.0, 1e-6);  // washed out: 0.07 pu exp(-60 / 3.3)
   bench.in.speed = 0.0;
   bench.run(0.3);
   EXPECT_EQ(bench.out().Vs,

@@ -26,7 +26,7 @@ TEST(StabiliserStab1, LimitsBothSignsAndWashesOut) {
   bench.in.speed = 0.02;
   EXPECT_EQ(bench.out().Vs, 0.05);
   bench.run(100.0);
-  EXPECT_NEAR(bench.out().Vs, 0.0, 1e-8);  // exp(-100 / 5) of 0.2 pu
+  EXPECT_NEAR(bench.out().Vs, 0.0, 1e-8);  // washed out: 0.2 pu exp(-100 / 5)
   bench.in.speed = 0.0;
   EXPECT_EQ(bench.out().Vs, -0.05);
 }

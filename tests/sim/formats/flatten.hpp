@@ -10,7 +10,7 @@
 
 namespace swingbank::sim::formats {
 
-/// Every number of a network, in one order, as bits; names and flags as text.
+/// Every number of a network as bits, in a fixed order; names and flags as text.
 struct Flat {
   std::vector<std::uint64_t> numbers;
   std::string words;

@@ -109,7 +109,7 @@ TEST(PsseVersion35, DistinguishesSwitchedShuntsOfOneBus) {
   const network::Network n = parse_raw(t, "case.raw");
   ASSERT_EQ(n.shunts.size(), 3u);
   EXPECT_NE(n.shunts[1].id, n.shunts[2].id);
-  ASSERT_EQ(n.switched.size(), 1u);  // the other has no blocks
+  ASSERT_EQ(n.switched.size(), 1u);  // the other switched shunt has no blocks
   EXPECT_EQ(n.switched[0].steps, (std::vector<double>{0.0, 0.03125, 0.0625}));
   EXPECT_EQ(n.switched[0].most, 1.1);
   expect_same(n, parse_raw(raw_text(n, 33), "out.raw"));

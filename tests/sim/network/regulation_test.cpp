@@ -57,7 +57,7 @@ TEST(Regulation, SeveralGeneratorsShareTheRegulationOfABus) {
   const PowerFlow flow = solve_power_flow(n);
   EXPECT_NEAR(std::abs(flow.voltage[3]), 1.0, 1e-12);
   EXPECT_NEAR(flow.generation[1].imag(), 3.0 * flow.generation[2].imag(), 1e-11);
-  // One of them is at its limit: the other regulates the bus alone.
+  // One of the two generators is at its limit, so the other one regulates the bus alone.
   const Network tight = four_buses("2,'1',40,0,5,-90,1.0,4,100,0,0.3,0,0,1,1,75\n",
                                    "3,'1',30,0,90,-90,1.0,4,50,0,0.3,0,0,1,1,25\n");
   const PowerFlow one = solve_power_flow(tight);

@@ -43,7 +43,7 @@ class PsseNetwork {
   }
 
  private:
-  /// Unit with given current: its base over the network's, its source admittance [pu on base_mva].
+  /// Unit with given current: ratio of its base to the network's, and its source admittance [pu on base_mva].
   struct Given {
     std::size_t unit;
     double scale;

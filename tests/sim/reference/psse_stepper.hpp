@@ -48,7 +48,7 @@ class PsseStepper {
   }
   [[nodiscard]] long switching() const { return std::lround(parts_[1].start / h_); }
 
-  /// Solves the network at t and stores the derivatives of the states; after the switching: their mean.
+  /// Solves the network at t and stores the derivatives of the states.
   void derive(double t) {
     network_->solve(t, y_);
     system_->derivatives(t, y_.data(), f_.data());
@@ -59,6 +59,7 @@ class PsseStepper {
       f_[g.speed] += (g.last - g.now) / (1.0 + y_[g.speed]) / (2.0 * g.inertia);
     }
   }
+  /// Switches to the network after the event; stores the mean of the derivatives before and after it.
   void switch_over(double t) {
     const auto f = f_;
     system_ = &after_;

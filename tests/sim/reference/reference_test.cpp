@@ -111,7 +111,8 @@ TEST(Reference, BoltedFaultIsTheLimitOfFaultsThroughAnImpedance) {
   double last = 1e300;
   for (double x : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const ReferenceRun run = run_reference(grid, fault(grid, 2, 0.5, 0.6, {0.0, x}), options);
-    // Only continuous channels: the voltage angle is kept at V = 0, but not behind an impedance.
+    // Only continuous channels are compared: with V = 0 the voltage angle keeps its value, behind an
+    // impedance it does not.
     double worst = 0.0;
     for (int p = 0; p < 2; ++p)
       for (int c : {0, 1, 2, 3, 4})

@@ -18,7 +18,7 @@ inline reference::ReferenceRun reference_run(const grid::Grid& grid, double rtol
   options.t_end = 5.0;
   options.rtol = rtol;
   options.atol = rtol / 100;
-  options.plants = {1};  // the other is behind 1e-4 pu, which amplifies the rounding of its voltage
+  options.plants = {1};  // plant 0 is behind 1e-4 pu, which amplifies the rounding of its voltage
   return reference::run_reference(grid, kFault, options);
 }
 

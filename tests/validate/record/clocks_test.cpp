@@ -34,7 +34,7 @@ void expect_thirty_per_second(const Record& r) {
 
 struct TimeUnit {
   const char* heading;
-  double seconds;  ///< of one unit
+  double seconds;  ///< length of one unit
 };
 class TimeUnitTest : public ::testing::TestWithParam<TimeUnit> {};
 TEST_P(TimeUnitTest, IsRead) {

@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(RecordComtradeTest, WaveformsBecomePhasors) {
   const Record r = waveforms({}).read();
   EXPECT_DOUBLE_EQ(r.rate(), 60);
-  EXPECT_EQ(r.samples(), 60);  // as many whole cycles
+  EXPECT_EQ(r.samples(), 60);  // one for each whole cycle
   EXPECT_THAT(r.notes, Contains(HasSubstr("window of one cycle")));
   // Mean over a cycle of a movement at 0.5 Hz: at most 0.05 (2 pi 0.5/60)^2 / 24; floats add 1e-6.
   EXPECT_LT(largest_error(r, {}), 1e-5);

@@ -27,9 +27,9 @@ struct Streamed {
   std::array<const char*, 3> phases = {"a", "b", "c"};
   double order = -120;        ///< angle from one phase to the next
   bool between = false;       ///< voltages between phases
-  double unbalance = 0;       ///< share of the negative sequence
+  double unbalance = 0;       ///< negative sequence [pu]
   std::string others = {};    ///< further headings; each column has the value 60
-  std::size_t leave_out = 9;  ///< columns of this phase
+  std::size_t leave_out = 9;  ///< phase (0 to 2) without columns
 };
 std::string text_of(const Streamed& s) {
   std::string text = "t_s";
