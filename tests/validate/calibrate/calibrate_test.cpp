@@ -241,7 +241,7 @@ TEST(Calibrate, CorrectsForVoltageNoiseWithXdppBelowXl) {
   EXPECT_GT(shift, 0.5);
 }
 
-/// Detects errors three times too wide as well as three times too narrow.
+/// Detects standard errors that are three times too large or too small.
 TEST(Calibrate, StandardErrors_EqualTheCramerRaoBound) {
   const Simulation s = simulate_three();
   plant::PlantModel model;

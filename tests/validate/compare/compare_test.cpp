@@ -214,8 +214,8 @@ TEST(CompareTest, ReportsTheBeginningInUtc) {
   EXPECT_THAT(csv_playback(e).substr(0, 400), HasSubstr(",utc\n"));
   EXPECT_THAT(csv_playback(e).substr(0, 400), HasSubstr("2024-05-01T23:59:00.500000Z"));
 }
-/// A record at 480/s after the P-class filter of IEEE C37.118.1 (a triangle over two cycles), at 60/s; then
-/// noise as in record_of.
+/// Filters a record of 480/s with the P-class filter of IEEE C37.118.1 (a triangle over two cycles), samples
+/// it at 60/s, and adds noise as record_of does.
 record::Record filtered(const record::Record& fine, double noise) {
   constexpr int kHalf = 7, kStride = 8;
   std::mt19937_64 generator(8);

@@ -53,7 +53,7 @@ TEST(ErrorMapTest, BinsContainResolvableFrequencies) {
   for (std::size_t w = 0; w < 5; ++w)
     for (std::size_t b = 0; b < 4; ++b)
       EXPECT_EQ(!map.rows[w].bands[b].empty(), resolved[w][b]) << w << " " << b;
-  EXPECT_EQ(map.rows[0].all.values, 120);  // 121 samples; their mean is the start
+  EXPECT_EQ(map.rows[0].all.values, 120);  // 121 samples, less their mean
   EXPECT_EQ(map.rows[1].all.values, 6);
   EXPECT_EQ(map.whole.values, 1200);
   // 12.9 s: modes 0 ... 2 lie below 0.1 Hz, 3 ... 20 below 0.8 Hz.

@@ -25,7 +25,7 @@ TEST(FitEvidence, DeterminedParameterAddsLogOfPriorOverPosteriorDeviation) {
   ASSERT_EQ(f.parameters.size(), 1U);
   const auto& H = f.parameters.front();
   const double sigma = H.error / H.value;  // H is fitted as a logarithm
-  EXPECT_LT(sigma, 0.1 * kPriorSd);        // otherwise the records determine nothing
+  EXPECT_LT(sigma, 0.1 * kPriorSd);        // the records determine H, not the prior
   EXPECT_NEAR(f.occam, 2 * std::log(kPriorSd / sigma), 1e-9);
   EXPECT_DOUBLE_EQ(criterion(f), f.chi2 + f.prior_cost + f.occam);
 }

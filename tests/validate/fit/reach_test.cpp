@@ -59,7 +59,8 @@ TEST_P(SelfExcited, IsFoundFromTheDefaultValue) {
 /// The optimum lies at the end of a curved valley, along which lenient steps correct their sensitivities.
 INSTANTIATE_TEST_SUITE_P(Steps, SelfExcited, ::testing::Values(false, true),
                          [](const auto& lenient) { return lenient.param ? "lenient" : "exact"; });
-/// Some public cases have machines with X''d below Xl. The fit to a record of such a machine keeps that.
+/// Some public cases have machines with X''d below Xl. The fit to a record of such a machine keeps X''d below
+/// Xl.
 TEST(FitOrderings, AllowsXdppBelowXl_WhenTheRecordsRequireIt) {
   ExciterExample example(0.2);
   sim::plant::Block& machine = example.model.plant.machine;

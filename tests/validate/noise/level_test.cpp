@@ -164,7 +164,7 @@ TEST(VoltageNoise, UsesCalmSegments_WhenThePreEventIsShort) {
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);
 }
 TEST(VoltageNoise, CorrectsForMeanAndTrendOfShortSegments) {
-  const Case c = moving(1, false, {.before = 6, .all = 12, .events = 1000});  // no calm second
+  const Case c = moving(1, false, {.before = 6, .all = 12, .events = 1000});  // no second without movement
   const VoltageNoise found = voltage_noise(c.fits, c.events);
   EXPECT_LT(found.doubt[1], 0.04);
   EXPECT_NEAR(found.variance[1], 4e-6, 12e-6 * found.doubt[1]);  // a seventh would be missing

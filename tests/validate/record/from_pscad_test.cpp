@@ -30,7 +30,7 @@ class RecordPscadTest : public ::testing::Test {
     std::ofstream(folder_ / name) << text;
   }
   /// Writes case.inf: eleven other channels around V [kV], f [Hz], P [MW] and Q [Mvar], of which V is in the
-  /// first and the others in the second file.
+  /// first file, and f, P and Q are in the second.
   void write_inf(const char* names = "V f P Q", const char* units = "kV Hz MW MVAR") const {
     std::string text;
     std::istringstream name(names), unit(units);
