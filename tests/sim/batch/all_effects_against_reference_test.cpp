@@ -179,7 +179,7 @@ grid::Grid drawn(const grid::Grid& plain, Draws& draws, Tally& tally, double sec
   }
 }
 
-/// Grids until at least `wanted` events were compared.
+/// Draws grids and compares their events until at least `wanted` events were compared.
 Tally run_events(int wanted, std::uint64_t seed) {
   const grid::Grid plain = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
   Draws draws(seed);

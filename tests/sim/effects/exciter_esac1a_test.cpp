@@ -78,7 +78,7 @@ TEST(ExciterEsac1a, CeilingIsWhereTheFieldBalancesVrmaxAndReleaseIsImmediate) {
   EXPECT_EQ(bench.out().Efd, 0.0);
   bench.in.dVref = 0.5;
   bench.run(0.3);
-  EXPECT_GT(bench.state("Ve"), 1.0);  // (6.03 - 0.76) 0.3/0.8 pu less the delay of Va
+  EXPECT_GT(bench.state("Ve"), 1.0);  // about (6.03 - 0.76) x 0.3/0.8 pu, less because of Va's delay
 }
 
 TEST(ExciterEsac1a, RefusesOperatingPointBeyondItsLimits) {

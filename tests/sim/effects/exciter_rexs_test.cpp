@@ -176,7 +176,7 @@ TEST(ExciterRexs, TheFieldsRegulatorStopsIntegratingAtItsLimit) {
   bench.in.dVref = 1.0;
   bench.run(20.0, 2e-3);
   EXPECT_NEAR(bench.out().Efd, (4.0 - 0.4 * 2.0) / 0.9, 1e-6);
-  EXPECT_LT(bench.state("xi"), 4.0);  // Vr is above it: its integral did not wind up
+  EXPECT_LT(bench.state("xi"), 4.0);  // Vr is above xi, so the integral did not wind up
   bench.in.dVref = -1.0;
   bench.run(2.0, 2e-3);
   EXPECT_LT(bench.out().Efd, 2.0);

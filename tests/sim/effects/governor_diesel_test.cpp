@@ -23,7 +23,7 @@ TEST(GovernorDiesel, IsochronousGovernorIntegratesTheSpeed) {
     const C exact = 0.8 - engine(omega, 0.04);
     const C h = bench.response(&Signals<double>::speed, &Signals<double>::Tm, omega);
     EXPECT_LT(std::abs(h - exact), 1e-4 * std::abs(exact))
-        << omega;  // the delay's ratio at s TD = 1.2j: 2e-6
+        << omega;  // error of the delay's rational approximation at s TD = 1.2j: 2e-6
   }
 }
 

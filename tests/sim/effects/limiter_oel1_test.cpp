@@ -6,7 +6,7 @@ namespace {
 
 using Values = ControlBench::Changes;
 
-/// Ifd is 2.0 pu at the start.
+/// Parameters of OEL1 with `changes`. Ifd is 2.0 pu at the start.
 Values values(const Values& changes) {
   Values all = {{"Ifdset", 2.8}, {"Ifcont", 2.4}, {"Tpickup", 10.0}, {"Runback", 50.0}};
   for (const auto& [name, value] : changes) all[name] = value;

@@ -1,4 +1,4 @@
-// UEL1: its circle in the P-Q plane, transfer function outside, wind-up and return, refusals.
+// UEL1: its circle in the P-Q plane, transfer function outside the circle, wind-up and return, refusals.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {

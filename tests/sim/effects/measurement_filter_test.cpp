@@ -51,7 +51,7 @@ TEST(PmuFilterP, TwoCycleTriangleHasASquaredSincResponse) {
 }
 
 TEST(PmuFilterP, CompensationRestoresTheMagnitude) {
-  // sinc^2 over cos(1.625 pi hz / 120), from the two formulas; class P is specified for +-2 Hz.
+  // sinc^2 divided by cos(1.625 pi hz / 120), from the two formulas; class P is specified for +-2 Hz.
   for (const double hz : {-2.0, -1.0, 0.5, 2.0}) {
     const double x = kPi * hz / 60.0;
     const double g = gain(960.0, hz, {kClassP, 1, 60, 1}).real();

@@ -31,8 +31,8 @@ Moments moments(std::size_t n, const Value& value) {
   return m;
 }
 
-/// A Gaussian of `deviation`, by 40,000 samples: mean within 4 deviations / 200, deviation within 4 / sqrt(2)
-/// / 200 = 1.5 %, 4.55 % beyond two deviations within 4 sqrt(0.0455 / 40000) = 0.43 %.
+/// Expects a normal distribution of 40,000 samples: mean within 4 deviations / 200, deviation within 4 /
+/// sqrt(2) / 200 = 1.5 %, 4.55 % beyond two deviations within 4 sqrt(0.0455 / 40000) = 0.43 %.
 void expect_normal(const Moments& m, double mean, double deviation) {
   EXPECT_NEAR(m.mean, mean, 0.02 * deviation);
   EXPECT_NEAR(m.deviation, deviation, 0.015 * deviation);

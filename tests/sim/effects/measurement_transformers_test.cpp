@@ -15,7 +15,8 @@ TEST(CurrentTransformer, ScalesAndRotatesTheCurrentOnly) {
     EXPECT_NEAR(std::abs(after.I[k]) / std::abs(before.I[k]), 1.01, 1e-14);  // rounding
     EXPECT_NEAR(std::arg(after.I[k] * std::conj(before.I[k])), 0.02, 1e-14);
   }
-  // S = V I*: of P = 1, Q = 0 a leading current makes Q = -1.01 sin(0.02).
+  // S = V I*: with P = 1 and Q = 0, a current that leads by 0.02 rad and is 1 % too large gives Q = -1.01
+  // sin(0.02).
   Phasors one{60.0, 60.0, {1.0}, {1.0}, {0.0}};
   one = measured("CTERROR", {0.01, 0.02}, one);
   EXPECT_NEAR(std::imag(one.V[0] * std::conj(one.I[0])), -0.020198653360, 1e-12);

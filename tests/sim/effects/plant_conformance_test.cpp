@@ -163,7 +163,7 @@ void batch_equals_double(const Effect& e, std::mt19937_64& random) {
   for (int l = 0; l < P::lanes; ++l)
     for (std::size_t i = 0; i < out.size(); ++i) {
       const double expected = alone[static_cast<std::size_t>(l)][i];
-      // a few ulp, for packs have their own sincos, times gains of up to 1e3
+      // a few ulp, because packs have their own sincos, times gains of up to 1e3
       EXPECT_NEAR(out[i][l], expected, 1e-11 * (1.0 + std::fabs(expected))) << e.name << " output " << i;
     }
 }

@@ -1,4 +1,5 @@
-// IEEEST: transfer function against the product of its blocks, limits, cut-off by voltage, zeros.
+// IEEEST: transfer function against the product of its blocks, limits, cut-off by voltage, parameters equal
+// to zero.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {

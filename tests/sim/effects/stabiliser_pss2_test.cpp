@@ -1,5 +1,5 @@
 // PSS2B and PSS2A: transfer functions from both inputs against the product of their blocks, order of the
-// ramp-tracking filter, rejection of power ramps, limits, zeros.
+// ramp-tracking filter, rejection of power ramps, limits, parameters equal to zero.
 #include "tests/sim/effects/control_bench.hpp"
 
 namespace swingbank::sim::test {

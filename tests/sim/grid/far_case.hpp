@@ -23,7 +23,7 @@ inline formats::RawCase behind_a_branch() {
   raw.branches += "102,104,'1',0.0,0.08,0.0,250,250,250,0,0,0,0,1,1,0,1,1\n";
   return raw;
 }
-/// The same with the transformer in the generator's own record.
+/// The same case with the transformer in the generator's own record.
 inline formats::RawCase behind_its_own_transformer(double P, double volts) {
   formats::RawCase raw = behind_a_branch();
   raw.buses.erase(raw.buses.find("104,"));

@@ -81,7 +81,7 @@ double last_voltage(const Grid& grid, int bus) {
   EXPECT_EQ(run.outcome, Outcome::stable);
   return run.bus_v.back();
 }
-// Its slope is zero, so that its integral restores exactly the regulated voltage.
+// The slope in the record is zero, so that the integral restores the regulated voltage exactly.
 TEST(StaticVar, RegulatesItsOwnBusOrAnother) {
   const Grid own = load_from(with_shunt(), kPlants + record("103"));
   EXPECT_NEAR(last_voltage(own, 103), std::abs(own.flow.voltage[2]), 2e-5);

@@ -40,7 +40,7 @@ TEST(SwitchedShunts, StepsAreKeptInTheNetwork) {
   EXPECT_GT(bank->admittance.imag(), 0.0);
   EXPECT_EQ(grid.network.switched[0].present, bank->admittance.imag());
   EXPECT_GE(std::abs(grid.flow.voltage[kBus]), 1.045);
-  // The resulting network has that solution.
+  // The resulting network has the same solution.
   const network::PowerFlow again = network::solve_power_flow(grid.network);
   for (std::size_t i = 0; i < again.voltage.size(); ++i)
     EXPECT_NEAR(std::abs(again.voltage[i] - grid.flow.voltage[i]), 0.0, 1e-11);

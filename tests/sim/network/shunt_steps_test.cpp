@@ -8,7 +8,7 @@
 namespace swingbank::sim::network {
 namespace {
 
-/// A slack bus behind 0.2 pu and a load of 0.5 + j0.4; bus 2 behind another 0.1 pu.
+/// Slack bus A, bus B with a load of 0.5 + j0.4 pu behind 0.2 pu, and bus C behind another 0.1 pu.
 Network two_lines() {
   Network n;
   n.origin = "two lines";

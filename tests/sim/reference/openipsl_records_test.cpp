@@ -39,7 +39,7 @@ grid::Grid grid_of(const std::string& dynamics) {
   problems.raise();
   return grid;
 }
-/// The record of the test's own .dyr beside the network.
+/// Text of the test's own .dyr, which lies beside the network.
 std::string beside(const std::string& name) {
   std::ifstream in(folder() / "smib" / (name + ".dyr"));
   std::string all, line;

@@ -41,7 +41,8 @@ TEST(PsseRecords, Hygov) {
   }
 }
 
-// HYGOV has no column for the dead-band: dropping it silently would change the plant.
+// HYGOV's .dyr record has no column for the dead-band. Dropping the dead-band silently would change the
+// plant.
 TEST(PsseGovernor, DeadBandIsKeptInADyr) {
   const auto configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs/networks";
   grid::Grid grid =

@@ -301,10 +301,10 @@ TEST_P(PsseRecordsManyUnits, WithExactIntegration) {
 // With PSS/E's own steps, network solution and single precision, V is off by 5.2e-6 (line) and 7.3e-6 pu
 // (generator), angles by 1.7e-4 and 1.6e-3 degrees. Relative to their swings, P is off by 0.07 and 0.27 %, Q
 // by 0.11 and 0.04 %, field current by 0.22 and 0.013 %. Errors below two units of the last printed digit are
-// not counted. These are those of the converters' P and Q, of every P of 1e-5 pu, and of unit 1's field
-// current, which is printed to 1e-4 pu and swings by 0.0023 pu. With double precision, Q (line) is off by 0.5
-// % after 20 s. With the network solved to convergence, P is off by 4.7 %. The error of P (generator) is
-// largest at the end, where angles of thousands of degrees are stored in single precision.
+// not counted: those of the converters' P and Q, of every P of 1e-5 pu, and of unit 1's field current, which
+// is printed to 1e-4 pu and swings by 0.0023 pu. With double precision, Q (line) is off by 0.5 % after 20 s.
+// With the network solved to convergence, P is off by 4.7 %. The error of P (generator) is largest at the
+// end, where angles of thousands of degrees are stored in single precision.
 TEST_P(PsseRecordsManyUnits, InPssesSteps) {
   const grid::Grid grid = many_units();
   const auto record = unpacked(GetParam().csv);

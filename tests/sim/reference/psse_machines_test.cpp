@@ -50,8 +50,8 @@ std::vector<double> stepped(const Case& c, double h) {
   return angle;
 }
 
-/// Largest difference from the record until `end` [degrees]. Both count PSS/E's steps: the record's time is
-/// printed in single precision, which drifts.
+/// Largest difference from the record until `end` [degrees]. Record and simulation are compared by step
+/// number, because the record's time is printed in single precision, which drifts.
 double largest_error(const Record& record, Conventions conventions, double end = kEnd) {
   const auto theirs = test::read_table(test::record_folder(record.folder) / record.angles, false);
   const auto ours = stepped(case_of(record, conventions), kStep);
