@@ -33,10 +33,17 @@ class Widener {
         if (const int way = plant.controls[b].effect->parameters[i].limit; way != 0)
           limits_.push_back({b, i, way, plant.controls[b].p[i]});
   }
+  /// Returns whether the operating point is feasible without the limits.
+  bool helps() {
+    open_all();
+    const bool feasible = is_feasible();
+    for (const Limit& l : limits_) value(l) = l.given;
+    return feasible;
+  }
   /// Widens the limits. If the operating point is infeasible for other reasons, returns these and leaves the
   /// plant unchanged.
   std::vector<Problem> widen() {
-    for (const Limit& l : limits_) value(l) = l.given + l.way * kAllOpen;
+    open_all();
     std::vector<Problem> left = hindrances(grid_, plant_);
     for (const Limit& l : limits_)
       if (left.empty())
@@ -49,6 +56,9 @@ class Widener {
  private:
   static constexpr double kAllOpen = 100.0;  ///< [pu] more than any operating point requires
   double& value(const Limit& l) { return plant_.controls[l.block].p[l.parameter]; }
+  void open_all() {
+    for (const Limit& l : limits_) value(l) = l.given + l.way * kAllOpen;
+  }
   bool is_feasible() { return hindrances(grid_, plant_).empty(); }
   /// Restores a limit to its given value, or to the nearest value with a feasible operating point.
   void narrow(const Limit& l) {
@@ -81,8 +91,9 @@ void settle_limits(Grid& grid, bool widen) {
   for (plant::Plant& plant : grid.plants) {
     std::vector<Problem> found = hindrances(grid, plant);
     if (!found.empty() && widen) found = Widener(grid, plant).widen();
+    const bool advise = !found.empty() && !widen && Widener(grid, plant).helps();
     for (Problem& p : found) {
-      if (!widen) p.remedy += ", or widen the limit with --widen-limits";
+      if (advise) p.remedy += ", or widen the limit with --widen-limits";
       problems.add(p.what, p.where, p.why, p.remedy);
     }
   }
