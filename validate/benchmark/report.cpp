@@ -328,8 +328,8 @@ std::string html_report(const std::vector<TestResult>& results, const ReportCont
     charts(page, r, c.reference);
     page.add(report::End{});
   }
-  page.provenance(c.provenance);
   page.add(report::Signatures{{"Owner", "Reviewer"}});
+  page.provenance(c.provenance);
   page.add(report::Data{"figures", json_report(results, c)});
   return report::html(page);
 }

@@ -317,8 +317,8 @@ std::string command_html(const CommandPage& p) {
   parameters_part(page, p.parameters);
   errors_part(page, p.played, p.use);
   glossary_part(page);
-  page.provenance(p.provenance);
   if (p.signatures) page.add(report::Signatures{{"Owner", "Reviewer"}});
+  page.provenance(p.provenance);
   if (!p.figures.empty()) page.add(report::Data{"figures", p.figures});
   return report::html(page);
 }
