@@ -290,8 +290,12 @@ class Search {
       p.start = a.start;
       p.value = a.value(z);
       p.error = a.derivative(z) * error;
-      p.low = std::max(a.low, a.value(z - constants::normal95 * error));
-      p.high = std::min(a.high, a.value(z + constants::normal95 * error));
+      const auto bound = [&](double sd) {  // NaN without errors
+        const double value = a.value(z + sd * error);
+        return std::isnan(value) ? value : std::clamp(value, a.low, a.high);
+      };
+      p.low = bound(-constants::normal95);
+      p.high = bound(constants::normal95);
       p.active_constraint = walls.active_constraint(static_cast<std::size_t>(i), z_.data());
       p.at_bound = z <= a.z(a.low) + 1e-6 || z >= a.z(a.high) - 1e-6 || !p.active_constraint.empty();
       p.decided =
