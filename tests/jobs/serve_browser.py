@@ -167,7 +167,7 @@ ActionChains(page).send_keys("s").perform()
 until("saving", lambda: "model.toml" in text("saved"), 60)
 assert "“+ SEXS”" in text("saved") and "replacing the existing files" in text("saved"), text("saved")
 
-# a stopped fit leaves the model as it is
+# a stopped fit is a step with the values until then; before the first values it leaves the model as it is
 ActionChains(page).send_keys("f").perform()
 until("the fit to begin", lambda: not idle(), 20)
 ActionChains(page).send_keys(Keys.ESCAPE).perform()

@@ -234,6 +234,22 @@ plant::PlantModel with_plant(plant::PlantModel model, const json& plant) {
   return model;
 }
 
+/// Returns the message with the values that a stopped fit has reached.
+json step_so_far(const json& request, plant::PlantModel model, const fit::Fit& reached) {
+  model.plant = reached.plant;
+  return {{"type", "step"},
+          {"kind", request.at("kind") == "add" ? "added" : "calibrated"},
+          {"stopped", true},
+          {"label", "Stopped fit"},
+          {"plant", plant_json(model)},
+          {"parameters", json::array()},
+          {"bands", calibrate::ResponseBands{}},
+          {"held_out", request.value("held_out", std::vector<std::string>{})},
+          {"sentence", fmt::format("Stopped. The step has the best values until then, without intervals: "
+                                   "reduced chi-square {:.3g}.",
+                                   reached.reduced_chi2())}};
+}
+
 void run_fit(const Setup& setup, const json& request, const Emit& emit) {
   const plant::PlantModel model = with_plant(setup.model, request.at("plant"));
   const std::string kind = request.at("kind");
@@ -255,6 +271,8 @@ void run_fit(const Setup& setup, const json& request, const Emit& emit) {
     } else {
       run_calibration(setup, model, request, one_at_a_time);
     }
+  } catch (const fit::InterruptedFit& stopped) {
+    emit(step_so_far(request, model, stopped.reached));
   } catch (const Interrupted&) {
     emit({{"type", "failed"}, {"text", "Stopped. The model is unchanged."}});
   } catch (const std::exception& error) {
@@ -274,8 +292,10 @@ Step step_of_fit(const Setup& setup, const Step& from, int parent, const json& m
   for (const auto& p : message.at("parameters"))
     if (p.at("low").is_number() && p.at("high").is_number())
       s.intervals.push_back({p.at("name"), p.at("low"), p.at("high")});
+  s.fitted = true;
   s.bands = message.at("bands").get<calibrate::ResponseBands>();
   s.model = with_plant(from.model, message.at("plant"));
+  if (message.value("stopped", false)) return s;  // no command ends at these values
   std::string held_out;
   for (const auto& name : s.held_out) held_out += " --hold-out " + shell_word(name);
   const std::string effect = message.value("effect", "");

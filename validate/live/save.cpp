@@ -93,7 +93,7 @@ nlohmann::json save(const Session& session, int step, OutputFolder& folder,
     page.played.back().name = "completed";
   }
   page.parameters = changed(setup, last);
-  page.use = {!last.intervals.empty() || !last.held_out.empty(), last.held_out};
+  page.use = {last.fitted || !last.held_out.empty(), last.held_out};
   page.handed_in = compare::handed_in(last.model, last.played->events);
   page.provenance = provenance;
   page.figures = json_text(

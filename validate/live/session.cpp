@@ -151,7 +151,7 @@ int Session::change(int from, const Values& values) {
   s->model = with_values(base->model, values);
   s->label = label_of(base->model, s->model);
   if (s->label.empty()) return from;
-  s->intervals = base->intervals;
+  s->fitted = base->fitted;
   s->held_out = base->held_out;
   s->played = played(*setup_, s->model, s->complete);
   s->command = fmt::format("swingbank compare --model model.toml{}", setup_->options);

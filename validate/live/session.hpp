@@ -41,14 +41,15 @@ struct Interval {
 struct Step {
   /// Origin of a step.
   enum class Kind { submitted, manual, added, calibrated };
-  Kind kind = Kind::submitted;             ///< origin
-  int parent = -1;                         ///< step before it; -1: none
-  std::string label;                       ///< "GENROU.H 6.54 → 5.2 s", "+ SEXS"
-  std::string command;                     ///< equivalent command line; empty: none
-  std::string sentence = {};               ///< result of the fit in words
-  plant::PlantModel model;                 ///< model of this step
-  std::vector<Interval> intervals = {};    ///< intervals of the fitted parameters
-  calibrate::ResponseBands bands = {};     ///< 95 % bands of the response; empty: not a fitted model
+  Kind kind = Kind::submitted;           ///< origin
+  int parent = -1;                       ///< step before it; -1: none
+  std::string label;                     ///< "GENROU.H 6.54 → 5.2 s", "+ SEXS"
+  std::string command;                   ///< equivalent command line; empty: none
+  std::string sentence = {};             ///< result of the fit in words
+  plant::PlantModel model;               ///< model of this step
+  bool fitted = false;                   ///< this step, or one before it, was fitted to the records
+  std::vector<Interval> intervals = {};  ///< intervals of the fitted parameters; empty after a manual change
+  calibrate::ResponseBands bands = {};   ///< 95 % bands of the response; empty: not a fitted model
   std::vector<std::string> held_out = {};  ///< names of records that the fit excluded
   double evidence = 0;       ///< 2 ln(Bayes factor) of an added effect over the refit without it
   bool provisional = false;  ///< whether it comes from first_step()

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/stop_signal.hpp"
 #include "validate/check/record_set.hpp"
 #include "validate/live/fits.hpp"
 #include "validate/live/overview.hpp"
@@ -120,6 +121,34 @@ TEST(LiveFits, StepOfAnAdditionNamesTheCommand) {
   EXPECT_EQ(s.intervals[0].high, 2.0);
   ASSERT_EQ(s.bands.size(), 1U);
   EXPECT_EQ(s.bands[0].at("Q"), (std::vector<double>{0.01, 0.02}));
+}
+
+/// The values of a fit that a user stops are a step without intervals. A manual change after a fit has none
+/// either, because those of the fit do not hold for other values.
+TEST(LiveFits, StoppedFitIsAStepWithoutIntervals) {
+  nlohmann::json last;
+  swingbank::detail::interruptible = 1;
+  int messages = 0;
+  run_fit(*example(), {{"kind", "calibrate"}, {"plant", plant_json(example()->model)}},
+          [&](const nlohmann::json& m) {
+            last = m;
+            if (++messages == 3) ask_to_stop();
+          });
+  swingbank::detail::interruptible = swingbank::detail::stop_asked = 0;
+  ASSERT_EQ(last.at("type"), "step") << last.dump();
+  Session session(example(), submitted());
+  const int stopped = session.append(step_of_fit(*example(), *submitted(), 0, last));
+  EXPECT_TRUE(session.step(stopped)->fitted);
+  EXPECT_TRUE(session.step(stopped)->intervals.empty());
+  EXPECT_TRUE(session.step(stopped)->command.empty());
+  EXPECT_THAT(session.step(stopped)->sentence, HasSubstr("Stopped"));
+  EXPECT_NE(session.step(stopped)->model.plant.machine.p, example()->model.plant.machine.p);
+
+  Step fitted = *session.step(stopped);
+  fitted.intervals = {{"GENROU.H", 4.0, 5.0}};
+  const int changed = session.change(session.append(fitted), {{"GENROU.H", 6.0}});
+  EXPECT_TRUE(session.step(changed)->intervals.empty());
+  EXPECT_TRUE(session.step(changed)->fitted);
 }
 
 TEST(LiveFits, FailureIsAMessage) {
