@@ -307,13 +307,35 @@ bool ReferenceSystem::newton(double t, double* y) const {
     const Eigen::SparseMatrix<double> jv = j.bottomRightCorner(2 * buses_, 2 * buses_);
     Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(jv);
     if (lu.info() != Eigen::Success) return false;
-    const Eigen::Map<const Eigen::VectorXd> rest(f.data() + plants_.states(), 2 * buses_);
-    Eigen::VectorXd step = lu.solve(rest);
-    step += lu.solve(rest - jv * step).eval();  // refinement: a fault of 1e-6 pu is ill-conditioned
-    double largest = step.cwiseAbs().maxCoeff();
+    const auto correction = [&] {
+      const Eigen::Map<const Eigen::VectorXd> rest(f.data() + plants_.states(), 2 * buses_);
+      Eigen::VectorXd step = lu.solve(rest);
+      step += lu.solve(rest - jv * step).eval();  // refinement: a fault of 1e-6 pu is ill-conditioned
+      return step;
+    };
+    const Eigen::VectorXd step = correction();
+    const double largest = step.cwiseAbs().maxCoeff();
     if (!std::isfinite(largest)) return false;
-    if (largest > 1.0) step *= 1.0 / largest;  // a constant-power load may make the first steps very long
-    for (int i = 0; i < 2 * buses_; ++i) y[plants_.states() + i] -= step[i];
+    // A constant-power load may make the first steps very long. At the limits of a converter the equations
+    // have kinks, between which full steps may alternate: a step is halved until it shortens the next
+    // correction (natural monotonicity test, P. Deuflhard, Newton Methods for Nonlinear Problems, 2004,
+    // section 3.3).
+    const std::vector<double> before(y + plants_.states(), y + size());
+    const auto move = [&](double share) {
+      for (int i = 0; i < 2 * buses_; ++i)
+        y[plants_.states() + i] = before[static_cast<std::size_t>(i)] - share * step[i];
+    };
+    const auto shortens = [&](double share) {
+      residual(t, y, yp.data(), f.data());
+      return correction().norm() <= (1 - share / 4) * step.norm();
+    };
+    const double longest = 1.0 / std::max(1.0, largest), shortest = longest / 64;
+    double share = longest;
+    for (move(share); largest >= tolerance && !shortens(share); move(share))
+      if ((share /= 2) < shortest) {
+        move(longest);
+        break;
+      }
     if (largest < tolerance) break;
     if (iteration + 1 == limit) return false;
   }
