@@ -84,7 +84,7 @@ bool inside(const std::vector<T>& v, const Range& r) {
 }
 
 std::string describe(const Range& r) {
-  const std::string unit = r.unit.empty() ? "" : " " + r.unit;
+  const std::string unit = r.unit.empty() || r.unit == "-" ? "" : " " + r.unit;
   if (std::isinf(r.low) && std::isinf(r.high)) return "a finite number" + unit;
   if (std::isinf(r.high)) return fmt::format("at least {}{}", r.low, unit);
   if (std::isinf(r.low)) return fmt::format("at most {}{}", r.high, unit);
@@ -231,7 +231,11 @@ std::vector<std::string> Config::keys(const std::string& table, const std::vecto
 }
 
 std::string Config::where(const std::string& key) const {
-  return tree_->at(key) != nullptr ? place(name_, tree_->at(key)->source().begin) : name_.string();
+  for (std::string at = key;; at.resize(at.rfind('.'))) {
+    if (const toml::node* n = tree_->at(at); n && n->source().begin.line > 0)
+      return place(name_, n->source().begin);
+    if (at.find('.') == std::string::npos) return name_.string();
+  }
 }
 
 std::pair<unsigned, unsigned> Config::position(const std::string& key) const {

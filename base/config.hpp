@@ -91,7 +91,8 @@ class Config {
                                               const std::string& opened_by = {}) const;
   /// Returns the texts of a required list. A text may name a table at the same level as the key.
   std::vector<std::string> table_names(const std::string& key, const Range& about = {});
-  /// Returns the place of a key's value, "file.toml:12:3", or the file's name if the key is missing.
+  /// Returns the place of a key's value, "file.toml:12:3". If the key is missing, returns the place of the
+  /// innermost table around it, or the file's name if there is none.
   [[nodiscard]] std::string where(const std::string& key) const;
   /// Returns line and column of a key's value, {0, 0} if the key is missing.
   [[nodiscard]] std::pair<unsigned, unsigned> position(const std::string& key) const;
