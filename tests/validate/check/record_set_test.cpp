@@ -54,10 +54,10 @@ TEST_F(RecordSets, HaveTheMistakeThatExplainsAllOfThem) {
     for (const Problem& p : problems.list()) all.push_back(p.remedy);
     return all;
   };
-  EXPECT_THAT(remedies({kSecond}), ::testing::ElementsAre("change the sign of P and Q"));
-  EXPECT_THAT(remedies({kFirst}), ::testing::ElementsAre("change the sign of Q"));
+  EXPECT_THAT(remedies({kSecond}), ::testing::ElementsAre(::testing::HasSubstr("signs of P and Q")));
+  EXPECT_THAT(remedies({kFirst}), ::testing::ElementsAre(::testing::HasSubstr("sign of Q")));
   for (const auto& files : {std::vector{kFirst, kSecond}, {kSecond, kFirst}})
-    EXPECT_THAT(remedies(files), ::testing::Each("change the sign of Q"));
+    EXPECT_THAT(remedies(files), ::testing::Each(::testing::HasSubstr("sign of Q")));
 }
 TEST_F(RecordSets, SkipTheCheckWithoutAModel) {
   Problems problems;

@@ -28,7 +28,7 @@ inline const std::vector<Mistake>& mistakes() {
          return Reading{x.V, x.theta, x.Q, x.P};
        }},
       {"power_sign", "with P and Q positive out of the machine the steps are consistent",
-       "change the sign of P and Q",
+       "reverse the signs of P and Q with --columns (P=-NAME,Q=-NAME)",
        [](const Reading& x) {
          return Reading{x.V, x.theta, -x.P, -x.Q};
        }},
@@ -44,7 +44,8 @@ inline const std::vector<Mistake>& mistakes() {
          return Reading{x.V, x.theta / constants::degree, x.P, x.Q};
        },
        0.006},
-      {"q_sign", "with the sign of Q reversed the steps are consistent", "change the sign of Q",
+      {"q_sign", "with the sign of Q reversed the steps are consistent",
+       "reverse the sign of Q with --columns (Q=-NAME)",
        [](const Reading& x) {
          return Reading{x.V, x.theta, x.P, -x.Q};
        }},
