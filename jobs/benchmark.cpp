@@ -11,7 +11,6 @@
 #include "jobs/event_records.hpp"
 #include "jobs/verdict.hpp"
 #include "validate/benchmark/generated_input.hpp"
-#include "validate/benchmark/grid_response.hpp"
 #include "validate/benchmark/report.hpp"
 #include "validate/plant/load_with_user_models.hpp"
 #include "validate/thresholds/adequacy.hpp"
@@ -41,16 +40,18 @@ plant::PlantModel load(const std::string& file, const Arguments& a) {
   return model;
 }
 
-/// Returns "bus 2 (manufacturer.toml)". The file name distinguishes two models of one plant, because both
-/// have the plant's name.
-std::string named(const plant::PlantModel& model) {
-  return fmt::format("{} ({})", model.name, std::filesystem::path(model.origin).filename().string());
+/// Returns "bus 2 (manufacturer.toml)", with the machine base if it differs from that of the model under
+/// test. The file name distinguishes two models of one plant, because both have the plant's name.
+std::string reference_name(const plant::PlantModel& reference, const plant::PlantModel& tested) {
+  const std::string base =
+      reference.plant.mva == tested.plant.mva ? "" : fmt::format(", {:g} MVA", reference.plant.mva);
+  return fmt::format("{} ({}{})", reference.name, std::filesystem::path(reference.origin).filename().string(),
+                     base);
 }
 
-/// Returns the record of each test: read, generated, or the response of the reference model behind a grid.
+/// Returns the record of each test, read or generated; empty for tests behind a grid impedance.
 std::vector<record::Record> read_inputs(const benchmark::TestSet& set, plant::PlantModel& model,
-                                        const plant::PlantModel* against, const Arguments& a,
-                                        Problems& problems) {
+                                        const Arguments& a, Problems& problems) {
   std::vector<std::string> files;
   for (const auto& t : set.tests)
     if (!t.record.empty() && std::ranges::count(files, t.record.string()) == 0)
@@ -74,7 +75,7 @@ std::vector<record::Record> read_inputs(const benchmark::TestSet& set, plant::Pl
   }
   std::vector<record::Record> records;
   for (const auto& t : set.tests)
-    records.push_back(t.behind_impedance() ? benchmark::grid_response(t, *set.initial, model, *against)
+    records.push_back(t.behind_impedance() ? record::Record{}
                       : t.record.empty()   ? benchmark::generated_input(t, *set.initial, model)
                                            : read.records[places.at(t.record.string())]);
   return records;
@@ -103,10 +104,16 @@ int run(Arguments& a) {
   Problems problems;
   benchmark::find_records(set, a.records, against.has_value(), problems);
   benchmark::check_controls(set, model, problems);
-  if (against && a.against != a.model) benchmark::check_controls(set, *against, problems);
+  if (against && a.against != a.model) {
+    benchmark::check_controls(set, *against, problems);
+    if (against->conventions.frequency != model.conventions.frequency)
+      problems.add(fmt::format("nominal frequencies of {:g} and {:g} Hz", model.conventions.frequency,
+                               against->conventions.frequency),
+                   "--against", "both models must have the same nominal frequency",
+                   "give the models for the same grid");
+  }
   problems.raise();
-  const std::vector<record::Record> records =
-      read_inputs(set, model, against ? &*against : nullptr, a, problems);
+  const std::vector<record::Record> records = read_inputs(set, model, a, problems);
   std::vector<std::string> names = {kPage, kResult, kTable};
   for (const auto& t : set.tests) names.push_back(curves_name(t));
   interruption_point();
@@ -118,11 +125,12 @@ int run(Arguments& a) {
                                                            .by = a.judging.by,
                                                            .progress = jobs::progress_line()});
   catch_stop_signals();
-  const benchmark::ReportContext context{.model = model,
-                                         .reference = against ? named(*against) : "EMT records",
-                                         .set = set,
-                                         .by = a.judging.by,
-                                         .provenance = provenance(a, set)};
+  const benchmark::ReportContext context{
+      .model = model,
+      .reference = against ? reference_name(*against, model) : "EMT records",
+      .set = set,
+      .by = a.judging.by,
+      .provenance = provenance(a, set)};
   const std::string json = benchmark::json_report(tested, context);
   for (const auto& t : tested)
     if (t.failure.empty()) write_file(results.file(curves_name(t.test)), benchmark::csv_curves(t));

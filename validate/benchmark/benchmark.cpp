@@ -130,42 +130,75 @@ void add_currents(compare::EventComparison& e, double per_machine) {
   }
 }
 
-/// Simulates the model behind the grid of the test, over the windows of its record.
-playin::Playback behind_grid(const Test& t, const BenchmarkInputs& in, const Record& r) {
-  Record response =
-      record::stretch(grid_response(t, *in.initial, in.model, in.model), r.t.front(), r.t.back());
-  playin::Playback p;
-  p.P = std::move(response.P);
-  p.Q = std::move(response.Q);
-  p.V = std::move(response.V);
-  return p;
+/// Returns the response of a model; a failure names its plant file.
+template <class Simulate>
+auto response_of(const plant::PlantModel& model, const Simulate& simulate) {
+  try {
+    return simulate(model);
+  } catch (const InputError& error) {
+    Problem problem = error.problems().front();
+    problem.what = std::filesystem::path(model.origin).filename().string() + ": " + problem.what;
+    throw InputError(std::move(problem));
+  }
 }
 
-TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& given) {
-  TestResult result{.test = t, .event = {}, .rows = {}, .fitness = {}, .failure = {}};
-  compare::EventComparison& e = result.event;
+/// Simulates both models behind the grid of the test. The response of the reference becomes the record.
+void simulate_behind_grid(const Test& t, const BenchmarkInputs& in, compare::EventComparison& e) {
+  const auto simulate = [&](const plant::PlantModel& model) {
+    return record_of_test(t, in.model, grid_response(t, *in.initial, in.model, model));
+  };
+  e.record = response_of(*in.against, simulate);
+  Record response = response_of(in.model, simulate);
+  e.playback.P = std::move(response.P);
+  e.playback.Q = std::move(response.Q);
+  e.playback.V = std::move(response.V);
+  e.switchings = event::prepare_events(in.model, {e.record}, {.step_shape = switching::StepShape::sharp})
+                     .front()
+                     .switchings;
+}
+
+/// Plays the record into the model, and into the reference model if there is one. Returns the response of the
+/// latter.
+playin::Playback play_record(const Test& t, const BenchmarkInputs& in, const Record& given,
+                             compare::EventComparison& e) {
   e.record = record_of_test(t, in.model, given);
-  const double mva = in.model.plant.mva, per_machine = mva / e.record.base.mva;
-  e.windows = windows_of(t, e.record);
-  e.left_out = outside_windows(e.record, e.windows);
-  const bool behind = t.behind_impedance();
   const plant::PlantModel& reference = in.against ? *in.against : in.model;
   const event::FitEvent prepared =
       event::prepare_events(reference, {e.record}, {.step_shape = switching::StepShape::sharp}).front();
   e.switchings = prepared.switchings;
   const playin::VoltageCurve curve(prepared.record, prepared.switchings);
-  const auto response = [&](const plant::PlantModel& of) {
-    return playin::play_in(of.under_test(), prepared.record, curve);
+  const auto play = [&](const plant::PlantModel& model) {
+    Record input = prepared.record;
+    // A step of the reference of Q is in pu of the plant's MVA, and sized for the model under test.
+    if (t.kind == TestKind::q_reference_step)
+      for (record::StagedEvent& step : input.staged) step.size *= in.model.plant.mva / model.plant.mva;
+    return playin::play_in(model.under_test(), input, curve);
   };
   playin::Playback other;
-  if (in.against && !behind) other = response(*in.against);
+  if (in.against) other = response_of(*in.against, play);
+  e.playback = response_of(in.model, play);
+  return other;
+}
+
+TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& given) {
+  TestResult result{.test = t, .event = {}, .rows = {}, .fitness = {}, .failure = {}};
+  compare::EventComparison& e = result.event;
+  const bool behind = t.behind_impedance();
+  const double mva = in.model.plant.mva;
+  playin::Playback other;
   try {
-    e.playback = behind ? behind_grid(t, in, e.record) : response(in.model);
+    if (behind)
+      simulate_behind_grid(t, in, e);
+    else
+      other = play_record(t, in, given, e);
   } catch (const InputError& error) {
     result.failure = error.problems().front().sentence();
     result.fitness = compare::not_judged(in.by, mva, result.failure);
     return result;
   }
+  const double per_machine = mva / e.record.base.mva;
+  e.windows = windows_of(t, e.record);
+  e.left_out = outside_windows(e.record, e.windows);
   const auto outputs = in.against ? std::vector{playin::Output::P, playin::Output::Q}
                                   : playin::compared_outputs(e.record, true);
   for (const playin::Output o : outputs)
@@ -196,7 +229,8 @@ std::string_view window_name(Phase phase) {
 
 std::vector<TestResult> run_benchmark(const std::vector<Test>& tests, const BenchmarkInputs& in) {
   Problems problems;
-  for (std::size_t k = 0; k < tests.size(); ++k) check_windows(tests[k], in.records[k], problems);
+  for (std::size_t k = 0; k < tests.size(); ++k)
+    if (!tests[k].behind_impedance()) check_windows(tests[k], in.records[k], problems);
   problems.raise();
   std::vector<TestResult> results(tests.size());
   in_parallel(

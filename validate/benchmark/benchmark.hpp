@@ -23,9 +23,9 @@ struct TestResult {
 struct BenchmarkInputs {
   const plant::PlantModel& model;              ///< model under test
   const plant::PlantModel* against = nullptr;  ///< reference model; null: the records are the reference
-  /// One for each test: recorded, generated_input(), or grid_response() of the reference model.
+  /// One for each test, recorded or generated_input(); not used in tests behind a grid impedance.
   const std::vector<record::Record>& records;
-  std::optional<InitialPoint> initial = {};  ///< operating point of the tests with grid_response()
+  std::optional<InitialPoint> initial = {};  ///< operating point of tests behind an impedance
   thresholds::Acceptance by;                 ///< limits
   event::Progress progress = {};             ///< called after each test
 };
@@ -38,10 +38,10 @@ std::string_view window_name(thresholds::Phase phase);
 /// Plays voltage and angle of each test's record into the model, and reference steps into its controls.
 /// Computes the errors of the response in the windows pre, during and post. The times of the event are known
 /// and exact; the operating point is the mean before the event. If the angle was integrated from a frequency,
-/// its phase jumps at the event are fitted to P and Q. In a test behind a grid impedance, the model is
-/// simulated behind the same impedance, and its terminal voltage is compared too. If the simulation of the
-/// model fails, the test fails and TestResult::failure contains the reason. Throws InputError if a record
-/// does not contain a test's windows, or if the simulation of the reference model fails.
+/// its phase jumps at the event are fitted to P and Q. In a test behind a grid impedance both models are
+/// simulated behind it, and their terminal voltages are compared too. If the simulation of the model or of
+/// the reference model fails, the test fails and TestResult::failure contains the reason. Throws InputError
+/// if a record does not contain a test's windows.
 std::vector<TestResult> run_benchmark(const std::vector<Test>& tests, const BenchmarkInputs& inputs);
 
 /// Whether the model passes all tests.

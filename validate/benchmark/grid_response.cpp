@@ -25,18 +25,20 @@ class OnPlantBase {
     return {source.imag(), {1.0 / (1.0 / (before - source) - 1.0 / stays), stays}};
   }
   [[nodiscard]] sim::network::Event event() const {
-    const double size = *test_.size;
     sim::network::Event event;
     if (test_.kind == TestKind::scr_step) event.trips = {{0, test_.event, test_.end}};
     if (test_.kind == TestKind::voltage_dip)
-      event.faults = {{0, test_.event, *test_.end, impedance(test_.grid->scr) * (1 + size) / -size}};
+      event.faults = {
+          {0, test_.event, *test_.end, impedance(test_.grid->scr) * (1 + *test_.size) / -*test_.size}};
     if (is_reference_step(test_.kind)) {
       const auto step = [&](double time, double by) {
         const bool power = test_.kind == TestKind::p_reference_step;
-        event.setpoint_steps.push_back({0, time, power ? 0 : by, power ? by * mva_ : 0});
+        // A voltage reference is in pu of the voltage, the others are in pu of the MVA.
+        const double size = test_.kind == TestKind::v_reference_step ? by : by * mva_;
+        event.setpoint_steps.push_back({0, time, power ? 0 : size, power ? size : 0});
       };
-      step(test_.event, size);
-      if (test_.end) step(*test_.end, -size);
+      step(test_.event, *test_.size);
+      if (test_.end) step(*test_.end, -*test_.size);
     }
     return event;
   }
@@ -64,8 +66,9 @@ record::Record grid_response(const Test& t, const InitialPoint& initial, const p
   options.channels = {sim::Channel::V, sim::Channel::theta, sim::Channel::P, sim::Channel::Q};
   const auto run = sim::reference::run_reference(grid, test.event(), options);
   if (run.outcome != sim::Outcome::stable)
-    throw InputError({fmt::format("simulation of {} in test '{}' ends at {:.4g} s: {}", simulated.origin,
-                                  t.name, run.stopped_at, sim::outcome_name(run.outcome)),
+    throw InputError({fmt::format("simulation ends at {:.4g} s: {}", run.stopped_at,
+                                  run.outcome == sim::Outcome::lost_synchronism ? "synchronism is lost"
+                                                                                : "the integrator fails"),
                       t.where,
                       fmt::format("the plant is behind a grid with a short-circuit ratio of {:g}",
                                   t.kind == TestKind::scr_step ? t.grid->scr + *t.size : t.grid->scr),

@@ -29,7 +29,7 @@ constexpr std::array<KindRecord, kTestKinds> kKinds = {{{"voltage_dip", "pu", 1,
                                                         {"frequency_step", "Hz", 10, 0, false},
                                                         {"frequency_ramp", "Hz/s", 10, 0, true},
                                                         {"phase_step", "deg", 180, 0, false},
-                                                        {"scr_step", "-", 100, -1, false},
+                                                        {"scr_step", "-", 1000, -1, false},
                                                         {"v_reference_step", "pu", 1, 0, false},
                                                         {"q_reference_step", "pu", 2, 0, false},
                                                         {"p_reference_step", "pu", 2, 0, false}}};
@@ -52,6 +52,9 @@ std::optional<Interval> window(Config& c, const std::string& key) {
 
 void check_size(Config& c, const std::string& at, const Test& t) {
   const KindRecord& kind = record_of(t.kind);
+  if (t.size == 0.0)
+    c.problem(at + "size", "size = 0", "the test has no disturbance",
+              fmt::format("give the change [{}]", kind.unit));
   if (t.size && *t.size * kind.sign < 0)
     c.problem(at + "size", fmt::format("size = {:g} {}", *t.size, kind.unit),
               t.kind == TestKind::scr_step ? "the short-circuit ratio falls when a line opens"
@@ -98,13 +101,10 @@ void read_grid(Config& c, const std::string& at, Test& t) {
   grid.scr = c.require<double>(
       at + ratio, {0.1, 1000, "-", "short-circuit power of the grid before the event, over the plant's MVA"});
   grid.x_over_r = c.require<double>(at + angle, {0.1, 1000, "-", "X/R of the grid's impedance"});
-  if (step && t.size && c.has(at + ratio) && !(grid.scr + *t.size > 0))
+  if (step && t.size && grid.scr > 0 && !(grid.scr + *t.size > 0))
     c.problem(at + "size", fmt::format("size = {:g} with scr = {:g}", *t.size, grid.scr),
               "scr + size is the short-circuit ratio after the event, which must be above 0",
               "give a smaller step");
-  if (t.kind == TestKind::voltage_dip && t.size == 0.0)
-    c.problem(at + "size", "size = 0 with scr", "the fault that causes the dip has no finite impedance",
-              "give a negative change of the voltage in pu");
   t.grid = grid;
 }
 
@@ -186,6 +186,24 @@ std::string given_file(const std::vector<std::string>& given, const std::string&
   return "";
 }
 
+/// Adds a problem if the input of the test, generated from t = 0 at `rate` [1/s], has too few samples before
+/// or during the event.
+void check_generated_times(const Test& t, double rate, Problems& problems) {
+  constexpr double kFewestBefore = 5, kFewestDuring = 2;
+  if (const double before = kFewestBefore / rate; !(t.event >= before))
+    problems.add(
+        fmt::format("event = {:g} s of test '{}'", t.event, t.name), t.where,
+        fmt::format("its input is generated from 0 s on, and the operating point is the mean of at least "
+                    "{:g} samples before the event",
+                    kFewestBefore),
+        fmt::format("let the event begin at {:.3g} s or later", before));
+  if (t.end && !(*t.end - t.event >= kFewestDuring / rate))
+    problems.add(
+        fmt::format("event of {:g} s in test '{}'", *t.end - t.event, t.name), t.where,
+        fmt::format("at {:g} samples per second it contains fewer than {:g} samples", rate, kFewestDuring),
+        "raise rate in [operating_point], or end the event later");
+}
+
 /// Returns whether the plant control regulates Q (RefFlag = 0); empty if the plant has no plant control.
 std::optional<bool> regulates_q(const sim::plant::Plant& plant) {
   for (const auto& block : plant.controls) {
@@ -247,6 +265,8 @@ void find_records(TestSet& set, const std::vector<std::string>& given, bool gene
                       "and at most {:g} samples",
                       set.initial->rate, kMostGenerated),
           "lower rate in [operating_point], or let the event begin earlier");
+    } else {
+      check_generated_times(t, set.initial->rate, problems);
     }
   }
   for (const std::string& file : given)
