@@ -97,10 +97,9 @@ int run(CommandLine& line, int argc, char** argv) {
            "bus beyond the unit's transformer, where the records were taken: the transformer becomes part "
            "of the plant")
       .positive();
-  line.add(
-          "--conventions", a.conventions,
-          "psse: governors set power; andes: torque; both neglect the speed term (omega = 1 pu) in the stator "
-          "voltage equations")
+  line.add("--conventions", a.conventions,
+           "psse: governors determine mechanical power; andes: torque; both neglect the speed term "
+           "(omega = 1 pu) in the stator voltage equations")
       .one_of({"psse", "andes"})
       .shows_default();
   line.add("--frequency-hz", a.unit.frequency_hz, "nominal frequency [Hz] of a network file without one");

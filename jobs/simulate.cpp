@@ -384,8 +384,8 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--user-model", o.user_models,
            "file (.toml) of a user-defined model that --attach may use; may be repeated");
   line.add("--convention", o.convention,
-           "psse: governors set power; andes: torque; both neglect the speed term (omega = 1 pu) in the "
-           "stator voltage equations (configs/README.md)")
+           "psse: governors determine mechanical power; andes: torque; both neglect the speed term "
+           "(omega = 1 pu) in the stator voltage equations (configs/README.md)")
       .one_of({"psse", "andes"})
       .shows_default();
   line.group("Power flow");

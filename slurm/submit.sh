@@ -44,7 +44,7 @@ fault() { echo "$1 at $SWINGBANK_SITE ($2): $3" >&2; faults=1; }
 whole() {
   local value=${!1:-}
   if [[ -z $value ]]; then
-    fault "no $1" "a site file sets every value" "start from a copy of slurm/site.conf"
+    fault "no $1" "a site file must set every value" "start from a copy of slurm/site.conf"
   elif [[ ! $value =~ ^[0-9]+$ ]] || ((10#$value < $2)); then
     fault "$1='$value'" "it is not a whole number of at least $2" "write such a number"
   fi

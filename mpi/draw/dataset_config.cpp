@@ -136,7 +136,7 @@ void read_effects(Config& c, DatasetConfig& d) {
     const sim::Effect* effect = d.attachments.back().block.effect;
     if (effect != nullptr && effect->slot == sim::Slot::measurement)
       problems.add(std::string(effect->name), "attach = '" + text + "'",
-                   "a dataset contains the plant's response, not an instrument's error", "leave it out");
+                   "a dataset contains the plant's response, not an instrument's error", "remove it");
   }
   for (const auto& p : problems.list()) c.problem("attach", p.what, p.where + ": " + p.why, p.remedy);
 }
@@ -179,11 +179,13 @@ void read_case(Config& c, DatasetConfig& d) {
 }
 
 void read_vary(Config& c, DatasetConfig& d) {
-  d.vary = c.choice("vary.who", {"one", "all"},
-                    Range{.meaning =
-                              "one: each draw varies one generator, in turn; all: every listed one"}) == "all"
-               ? Vary::all
-               : Vary::one;
+  d.vary =
+      c.choice(
+          "vary.who", {"one", "all"},
+          Range{.meaning = "one: each event varies one generator, in turn; all: every listed generator"}) ==
+              "all"
+          ? Vary::all
+          : Vary::one;
   d.generators = numbers(c.require<std::vector<std::int64_t>>(
       "vary.generators", bus_number("bus numbers of the varied generators")));
   if (c.has("vary.generators") && d.generators.empty())
@@ -220,8 +222,8 @@ void read_fault(Config& c, FaultConfig& f) {
     c.choice("fault.buses", {"any"}, Range{.meaning = "any bus"});
   else
     f.buses = numbers(c.require<std::vector<std::int64_t>>("fault.buses", bus_number("bus numbers")));
-  f.except = numbers(
-      c.optional<std::vector<std::int64_t>>("fault.except", {}, bus_number("bus numbers without a fault")));
+  f.except = numbers(c.optional<std::vector<std::int64_t>>(
+      "fault.except", {}, bus_number("numbers of the buses that are never faulted")));
   f.start = c.optional<double>("fault.start", f.start, {0.0, 1e4, "s", "start of the fault"});
   std::tie(f.shortest, f.longest) =
       c.interval("fault.duration", {1e-4, 100.0, "s", "[shortest, longest] duration"});
@@ -256,10 +258,11 @@ void read_record(Config& c, RecordConfig& r) {
       c.problem("record.channels", "channel '" + name + "'", "there is no such channel",
                 fmt::format("use some of: {}", fmt::join(known, ", ")));
   if (c.has("record.channels") && r.channels.empty())
-    c.problem("record.channels", "no channel", "a record holds at least one",
+    c.problem("record.channels", "no channel", "a record contains at least one",
               fmt::format("use some of: {}", fmt::join(known, ", ")));
   for (const auto& name : repeated(r.channels))
-    c.problem("record.channels", "channel '" + name + "' twice", "a record holds each once", "name it once");
+    c.problem("record.channels", "channel '" + name + "' twice", "a record contains each channel once",
+              "list it once");
   const bool frequency = std::ranges::find(r.channels, "frequency") != r.channels.end();
   read_time_constant(c, "record.frequency_washout", frequency, r.frequency.washout);
   read_time_constant(c, "record.frequency_filter", frequency, r.frequency.filter);
@@ -282,10 +285,12 @@ void read_databank(Config& c, DatabankConfig& b) {
                         {0.0, 1e6, "", "minimum Euclidean distance of two databank samples; 0: no minimum"});
   b.scaled =
       c.choice("databank.scale", {"raw", "scaled"}, "raw",
-               {.meaning = "distance in the parameters' own units, or in widths of the box"}) == "scaled";
+               {.meaning =
+                    "raw: distance in the parameters' units; scaled: relative to the parameter intervals"}) ==
+      "scaled";
   b.candidates_per_point =
       c.optional<double>("databank.candidates_per_point", b.candidates_per_point,
-                         {1.0, 1e9, "", "maximum number of candidates per databank sample"});
+                         {1.0, 1e9, "", "maximum number of admissible candidates per databank sample"});
 }
 
 /// Reads [operating_point], if present.
@@ -318,7 +323,8 @@ void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point)
   p.lines_out_low = static_cast<int>(low);
   p.lines_out_high = static_cast<int>(high);
   if (low != p.lines_out_low || high != p.lines_out_high)
-    c.problem("operating_point.lines_out", "a fraction of a line", "lines are counted", "give whole numbers");
+    c.problem("operating_point.lines_out", "a fractional number of lines", "lines are counted",
+              "give whole numbers");
   if (!p.draws_bases() && p.oversized_share > 0.0)
     c.problem("operating_point.oversized_share", "oversized machines without loading",
               "a machine's base is drawn from its loading", "give loading = [low, high] too");
@@ -405,7 +411,7 @@ DatasetConfig read_values(Config& c, std::optional<double>& megabytes) {
   d.dyr = c.file("dyr", {.meaning = "dynamic models, relative to the folder of this file"});
   read_case(c, d);
   d.psse = c.choice("convention", {"psse", "andes"},
-                    Range{.meaning = "psse: governors set power; andes: torque"}) != "andes";
+                    Range{.meaning = "psse: governors determine mechanical power; andes: torque"}) != "andes";
   d.draws = static_cast<std::uint64_t>(c.require<std::int64_t>("draws", count("events to simulate")));
   megabytes = read_shard_size(c, d);
   d.seed = static_cast<std::uint64_t>(c.optional<std::int64_t>("seed", 1, kSeed));

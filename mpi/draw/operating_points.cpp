@@ -128,12 +128,11 @@ OperatingPoint draw_point(const Study& study, std::uint64_t block) {
   for (std::uint64_t i = 0; i < kMostDraws && !point.grid; ++i)
     point.grid = try_once(study, block * kMostDraws + i, point.redrawn);
   if (point.grid) return point;
-  throw InputError(
-      {fmt::format("no operating point for block {}", block), study.config.file.string(),
-       fmt::format(
-           "of {} random operating points, the power flow of {} did not converge and {} were implausible",
-           kMostDraws, point.redrawn.no_power_flow, point.redrawn.implausible),
-       "narrow loads, dispatch, voltage or lines_out of [operating_point]"});
+  throw InputError({fmt::format("no operating point for block {}", block), study.config.file.string(),
+                    fmt::format("the power flow did not converge for {} of {} random operating points, and "
+                                "{} others were implausible",
+                                point.redrawn.no_power_flow, kMostDraws, point.redrawn.implausible),
+                    "narrow loads, dispatch, voltage or lines_out of [operating_point]"});
 }
 
 }  // namespace

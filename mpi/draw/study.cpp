@@ -54,7 +54,7 @@ Study load_study(const DatasetConfig& config) {
                      fmt::format("it has {} {} with parameters in [vary.effects.{}]", n == 0 ? "no" : "two",
                                  effect->name, effect->name),
                      n == 0 ? fmt::format("add \"{}:{}\" to attach", plant->name, effect->name)
-                            : "leave one of them in the .dyr");
+                            : "keep only one of them in the .dyr");
   }
   const auto index_of = [&](int number, const char* key) {
     const int bus = network.bus_index(number);

@@ -241,7 +241,7 @@ DatasetHeader read_header(const fs::path& folder) {
     throw;
   } catch (const std::runtime_error& e) {
     throw InputError({"unknown format of the dataset header", file.string(), e.what(),
-                      "use the version of the software that wrote it"});
+                      "use the version of Swingbank that wrote it"});
   }
 }
 

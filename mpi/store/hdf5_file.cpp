@@ -283,7 +283,7 @@ void File::transfer(const std::string& object, hsize_t first, hsize_t count, hid
     throw InputError({"rows " + std::to_string(first) + " to " + std::to_string(first + count - 1),
                       name_.string() + ":" + object,
                       "the array has " + std::to_string(extent.empty() ? 0 : extent[0]) + " rows",
-                      "ask for rows that exist"});
+                      "request existing rows"});
   }
   start[0] = first;
   extent[0] = count;

@@ -26,7 +26,7 @@ DatasetHeader common_header(const std::vector<fs::path>& folders) {
       problems.add("a dataset of another config", folder.string(),
                    "its header (config hash " + h.config_hash + ", kernel " + h.kernel + ") is not that of " +
                        folders.front().string() + " (" + first.config_hash + ", kernel " + first.kernel + ")",
-                   "merge what was generated from one config, size and seed by one build");
+                   "merge only datasets that one build generated from the same config, size and seed");
   }
   problems.raise();
   return first;
@@ -79,7 +79,7 @@ class Merge {
         throw InputError(
             {"shard " + std::to_string(line.shard) + " twice", folder.string(),
              "it has the hash " + line.hash + ", " + into_.string() + " has " + found->second.hash,
-             "verify both folders and merge the one that is right"});
+             "verify both folders with swingbank verify, and merge the valid one"});
       return;
     }
     JournalLine mine = line;

@@ -28,8 +28,7 @@ void check_shape(double rate, std::size_t samples, std::size_t components) {
                  "PCA needs an integer number of seconds", "make the window a whole number of seconds");
   else if (components > per_second)
     problems.add(fmt::format("{} components of {} samples", components, per_second), "pca_components",
-                 "there cannot be more components than samples in a second",
-                 "lower pca_components or slice less");
+                 "there cannot be more components than samples in a second", "lower pca_components or slice");
   problems.raise();
 }
 

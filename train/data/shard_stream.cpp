@@ -107,7 +107,7 @@ void ShardStream::append(mpi::store::Dataset more) {
   const auto same = [&](bool equal, const char* what) {
     if (!equal)
       problems.add(std::string("a different ") + what, more.path.string(),
-                   "additional training rows must be of the same kind as those of " + d.path.string(),
+                   "additional training rows must agree in it with " + d.path.string(),
                    "generate them from a config with the same [record] and [vary]");
   };
   same(more.channel_names == d.channel_names, "list of channels");

@@ -56,8 +56,8 @@ class Rows {
                                                                   : sim::Conventions::psse(d.frequency);
     for (const auto& name : d.held_names)
       if (effect_->parameter_index(name) < 0)
-        problems.add("held parameter " + name, where, d.machine_model + " has no such parameter",
-                     "use the version of the software that made the dataset");
+        problems.add("unknown fixed parameter " + name, where, d.machine_model + " has no such parameter",
+                     "use the version of Swingbank that generated the dataset");
     problems.raise();
     for (std::size_t g = 0; g < d.generators.size(); ++g) {
       auto& known = known_[d.generators[g]] = effect_->default_parameters();

@@ -100,8 +100,8 @@ void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, Netw
     const auto zero =
         c.require<double>(at + ".training_noise_zero", {0.0, 1.0, "", "share of rows without noise"});
     if (range.size() != 2 || range[0] >= range[1])
-      c.problem(name, "invalid range of noise levels", "it is a lowest level above 0 and a highest",
-                "give [0.0001, 0.005]");
+      c.problem(name, "invalid range of noise levels",
+                "it must be [lowest, highest] with 0 < lowest < highest", "give for example [0.0001, 0.005]");
     else
       t.noise_levels = {range[0], range[1], zero};
   }
@@ -113,7 +113,8 @@ void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, Netw
               "choose one of these, or leave training_noise out");
   if ((t.kind == "swing") != (input.recipe.form == data::InputForm::swing))
     c.problem(at + ".form", fmt::format("network {} with the wrong form", t.kind),
-              "the network swing and the form swing need each other", "choose form = \"swing\" for it alone");
+              "the network swing requires the form swing, and no other network accepts that form",
+              "set form = \"swing\" for the network swing only");
 }
 
 void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i) {
@@ -202,7 +203,7 @@ Preset read_preset(Config& c, const std::string& name) {
       c.problem(at + ".networks", fmt::format("no network called '{}'", kind), "there is no such network",
                 fmt::format("choose among {}", fmt::join(known, ", ")));
     p.training[network].corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "",
-                                            {.meaning = "method whose estimates it corrects"});
+                                            {.meaning = "method whose estimates the network corrects"});
     if (!p.training[network].corrects.empty()) train_as_judged(p.training[network]);
     read_input(c, own, false, p.input[network]);
     read_training(c, own, false, p.training[network]);
@@ -241,8 +242,8 @@ Experiment read_experiment(Config& c) {
     e.presets[name] = read_preset(c, name);
     for (const auto& [network, training] : e.presets[name].training)
       if (e.across && !training.training_rows)
-        c.problem("preset." + name + ".training_rows", fmt::format("no rows that train {}", network),
-                  "this split trains on training_dataset only; its mean is the baseline",
+        c.problem("preset." + name + ".training_rows", fmt::format("no training rows for {}", network),
+                  "the split across-datasets trains on training_dataset only",
                   "add training_rows = true to the preset");
   }
   if (e.presets.empty())

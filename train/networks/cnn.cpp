@@ -69,7 +69,7 @@ class Cnn final : public Network {
 std::unique_ptr<Network> make_network_cnn(const NetworkShape& shape) {
   if (shape.samples < kPoolFirst * kPoolSecond)
     throw InputError({"series of " + std::to_string(shape.samples) + " samples", "network cnn",
-                      "its two max-pools need at least 8", "widen the window or slice less"});
+                      "its two max-pools need at least 8", "widen the window or lower slice"});
   return std::make_unique<Cnn>(shape);
 }
 

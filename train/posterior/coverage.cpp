@@ -24,7 +24,7 @@ ParameterCoverage of_parameter(const Posteriors& posteriors, const Recalibration
   ParameterCoverage c;
   const auto share = 1.0 / static_cast<double>(posteriors.rows);
   for (std::size_t r = 0; r < posteriors.rows; ++r) {
-    const double below = normal_cdf(recalibration.right(all_scores[r * posteriors.parameters + p]));
+    const double below = normal_cdf(recalibration.recalibrated(all_scores[r * posteriors.parameters + p]));
     ++c.ranks.count[bin_of(below)];
     if (below > 0.25 && below < 0.75) c.within_50 += share;
     if (below > 0.05 && below < 0.95) c.within_90 += share;
@@ -113,7 +113,7 @@ double Coverage::mean(double ParameterCoverage::*of) const {
 double quantile_of_score(const Mixture& posterior, const Recalibration& recalibration, double score) {
   constexpr double kFarthest = 6.0;  // largest score; a tail probability beyond it is rounding error
   return place_of_logit(
-      posterior.quantile_of_score(std::clamp(recalibration.wrong(score), -kFarthest, kFarthest)));
+      posterior.quantile_of_score(std::clamp(recalibration.original(score), -kFarthest, kFarthest)));
 }
 
 double quantile(const Mixture& posterior, const Recalibration& recalibration, double p) {

@@ -50,8 +50,10 @@ Recalibration Recalibration::fit(std::span<const double> scores) {
   return r;
 }
 
-double Recalibration::right(double score) const { return along(node_scores_, standard(), score); }
-double Recalibration::wrong(double right) const { return along(standard(), node_scores_, right); }
+double Recalibration::recalibrated(double score) const { return along(node_scores_, standard(), score); }
+double Recalibration::original(double recalibrated_score) const {
+  return along(standard(), node_scores_, recalibrated_score);
+}
 
 Recalibration Recalibration::between(const Recalibration& a, const Recalibration& b, double share) {
   Recalibration r;

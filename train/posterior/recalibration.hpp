@@ -23,9 +23,9 @@ class Recalibration {
     return node_scores_;
   }
   /// Returns the recalibrated score.
-  [[nodiscard]] double right(double score) const;
-  /// Inverse of right().
-  [[nodiscard]] double wrong(double right) const;
+  [[nodiscard]] double recalibrated(double score) const;
+  /// Inverse of recalibrated().
+  [[nodiscard]] double original(double recalibrated_score) const;
   /// Returns the map (1 - share) a + share b.
   static Recalibration between(const Recalibration& a, const Recalibration& b, double share);
 

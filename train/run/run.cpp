@@ -113,7 +113,7 @@ RunOutcome run_direct(const PreparedRun& run, const std::filesystem::path& resul
     throw InputError({"shuffled labels for " + r.network, "--shuffle-labels", "this method is not trained",
                       "leave it out, or choose a network"});
   loop::TrainingProgress progress(run_name(r), rows.size(), r.quiet);
-  progress.line(fmt::format("{} test rows, nothing to train", rows.size()));
+  progress.line(fmt::format("{} test rows; the method is not trained", rows.size()));
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t processor = std::clock();
   const auto found = direct::estimate(run.stream.dataset(), rows, r.network, run.stream.noise(),
@@ -338,8 +338,7 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
     prepared.emplace(prepare(stream, r));
     if (ranks.size() > 1 && direct::is_method(r.network))
       throw InputError({fmt::format("{} ranks for {}", ranks.size(), r.network), "mpirun",
-                        "this method is not trained, so ranks have nothing to share",
-                        "start it without mpirun"});
+                        "this method is not trained, and runs in one process", "start it without mpirun"});
     const std::size_t batch = prepared->recipe.batch;
     if (static_cast<std::size_t>(ranks.size()) > batch)
       throw InputError({fmt::format("{} ranks", ranks.size()), "mpirun",

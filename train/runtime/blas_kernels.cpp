@@ -173,7 +173,7 @@ void use_best_blas_kernels(char** argv) {
   warn(choice.warning);
   warn(rate.warning());
   if (processor.avx2 && others == "NO AVX")
-    warn(Problem{"loops without AVX2", "LibTorch", "this processor has it", "unset ATEN_CPU_CAPABILITY"}
+    warn(Problem{"loops without AVX2", "LibTorch", "this processor supports it", "unset ATEN_CPU_CAPABILITY"}
              .sentence());
 }
 

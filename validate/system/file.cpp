@@ -83,10 +83,11 @@ void read_grid(Config& c, SystemCase& s) {
     });
   s.raw = c.file("system.raw", {.meaning = "network (.raw or .m), relative to the folder of this file"});
   s.dyr = c.file("system.dyr", {.meaning = "dynamic models, relative to the folder of this file"});
-  const auto conventions = c.choice("system.conventions", {"psse", "andes"},
-                                    Range{.meaning = "psse: governors set power; andes: torque"}) == "andes"
-                               ? sim::Conventions::andes()
-                               : sim::Conventions::psse();
+  const auto conventions =
+      c.choice("system.conventions", {"psse", "andes"},
+               Range{.meaning = "psse: governors determine mechanical power; andes: torque"}) == "andes"
+          ? sim::Conventions::andes()
+          : sim::Conventions::psse();
   std::optional<double> hz;
   if (c.has("system.frequency_hz"))
     hz = c.require<double>("system.frequency_hz",

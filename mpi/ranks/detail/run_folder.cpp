@@ -70,10 +70,11 @@ bool is_unclaimed(const fs::path& folder) {
 void require_same_config(const fs::path& folder, const store::DatasetHeader& header) {
   const store::DatasetHeader found = store::read_header(folder);
   if (found.config_hash == header.config_hash) return;
-  throw InputError({"a dataset of another config", folder.string(),
-                    fmt::format("its config hash is {} (kernel {}), this run's is {} (kernel {})",
-                                found.config_hash, found.kernel, header.config_hash, header.kernel),
-                    "give another folder, or the config, size, seed and build it was made with"});
+  throw InputError(
+      {"a dataset of another config", folder.string(),
+       fmt::format("its config hash is {} (kernel {}), this run's is {} (kernel {})", found.config_hash,
+                   found.kernel, header.config_hash, header.kernel),
+       "give another folder, or use the config, size, seed and build that generated this dataset"});
 }
 
 bool is_archive(const fs::path& folder) {
@@ -150,7 +151,7 @@ std::vector<store::JournalLine> journalled(const GenerateOptions& o) {
 void settle(const fs::path& folder, const std::vector<store::BadShard>& bad, bool repair) {
   Problems problems;
   for (const auto& [shard, p] : bad) {
-    if (repair) spdlog::warn("will be generated again: {} at {} ({})", p.what, p.where, p.why);
+    if (repair) spdlog::warn("the shard is generated again: {} at {} ({})", p.what, p.where, p.why);
     if (!repair) problems.add(p.what, p.where, p.why, p.remedy);
   }
   problems.raise();

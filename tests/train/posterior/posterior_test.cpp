@@ -106,7 +106,7 @@ TEST(CoverageFull, OfOverconfidentPosteriorsIsNominalAfterRecalibration) {
     std::vector<double> own;
     for (std::size_t r = 0; r < 4000; ++r) own.push_back(all[2 * r + p]);
     maps.push_back(Recalibration::fit(own));
-    EXPECT_NEAR(maps[p].right(maps[p].wrong(0.4)), 0.4, 1e-9);
+    EXPECT_NEAR(maps[p].recalibrated(maps[p].original(0.4)), 0.4, 1e-9);
   }
   const Coverage honest = coverage(other.posteriors, maps, other.places, 1);
   EXPECT_NEAR(honest.mean(&ParameterCoverage::within_50), 0.5, 0.025);
