@@ -170,7 +170,7 @@ def drawing(modules):
 
 def main():
     if sys.argv[1:] not in ([], ["--check"]):
-        sys.exit(f"unknown option at '{sys.argv[1]}' (docs/architecture.py knows --check only): leave it out")
+        sys.exit(f"unknown option at '{sys.argv[1]}' (docs/architecture.py accepts --check only): remove it")
     file = ROOT / "docs" / "architecture.svg"
     text = drawing(read_modules())
     if not sys.argv[1:]:

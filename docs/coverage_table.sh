@@ -14,9 +14,9 @@ import json, pathlib, sys
 c = json.load(sys.stdin)
 rows = ["| model | records | covered | read as |", "|---|---:|---:|---|"]
 for m in c["models"]:
-    read_as = "%s %s" % (m["slot"].replace("_", " "), m["effect"]) if m["effect"] else m["missing_because"] or "nothing yet"
+    read_as = "%s %s" % (m["slot"].replace("_", " "), m["effect"]) if m["effect"] else m["missing_because"] or "not supported"
     rows.append("| %s | %d | %d | %s |" % (m["name"].replace("|", ""), m["records"], m["covered"], read_as))
-text = "Of {:,} records in {} files {:,} are covered ({:.1f} %):\n\n".format(c["records"], c["files"], c["covered"], c["percent"])
+text = "{:,} of {:,} records in {} files are covered ({:.1f} %):\n\n".format(c["covered"], c["records"], c["files"], c["percent"])
 page = pathlib.Path("docs/models.md")
 old = page.read_text()
 begin, end = "<!-- coverage -->\n", "<!-- end of coverage -->\n"

@@ -14,7 +14,7 @@ check=0
 case ${1-} in
   '') ;;
   --check) check=1 ;;
-  *) echo "unknown option at '$1' (docs/readme_tables.sh knows --check only): leave it out" >&2; exit 1 ;;
+  *) echo "unknown option at '$1' (docs/readme_tables.sh accepts --check only): remove it" >&2; exit 1 ;;
 esac
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

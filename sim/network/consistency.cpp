@@ -396,7 +396,8 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
   if (!finite || (worst > most && how == DeviceReplacement::checked)) {
     problems.add(
         at_bus.begin()->second + " without a model", where,
-        "its power follows from the file's voltages, but they are not a solution: the mismatch is " +
+        "its power is computed from the file's voltages, but they do not satisfy the power flow: the "
+        "mismatch is " +
             pu(worst * n.base_mva) + " MVA" + (bus < 0 ? std::string() : " at " + n.bus_text(bus)),
         "solve the case before saving it; or use --devices file (accept the mismatch) or --devices none "
         "(ignore the equipment)");

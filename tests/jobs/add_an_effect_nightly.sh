@@ -78,11 +78,11 @@ def table(name):
         rows = list(csv.reader(file))
     return dict(zip(rows[0], numpy.array(rows[1:], float).T))
 
-law, header = table("law.csv"), table("header.csv")
-efd = law["2.Efd_pu"]
+model, header = table("model.csv"), table("header.csv")
+efd = model["2.Efd_pu"]
 assert abs(efd[-1] - efd[0]) > 0.1  # the step and the limiter move it
-for name in law:  # two runs of the same equations by the reference integrator at rtol 1e-8
-    worst = numpy.abs(law[name] - header[name]).max()
+for name in model:  # two runs of the same equations by the reference integrator at rtol 1e-8
+    worst = numpy.abs(model[name] - header[name]).max()
     assert worst < 1e-5, (name, worst)
 
 def records(folder):
@@ -92,14 +92,14 @@ def records(folder):
             arrays.append(file["records"][:])
     return numpy.concatenate(arrays)
 
-a, b = records("law_data"), records("header_data")
+a, b = records("model_data"), records("header_data")
 assert a.shape == b.shape and a.shape[0] == 4, (a.shape, b.shape)
 assert numpy.abs(a - b).max() < 1e-5, numpy.abs(a - b).max()  # float32 of values near 1 to 5
 
-for name, folder in (("FLUXLAW", "law_compared"), ("FLUXLIM", "header_compared")):
+for name, folder in (("FLUXMODEL", "model_compared"), ("FLUXLIM", "header_compared")):
     assert (pathlib.Path(folder) / "compare.json").stat().st_size > 0
     assert pathlib.Path(folder, "report.html").exists()
-one, other = (json.loads(pathlib.Path(f, "compare.json").read_text()) for f in ("law_compared", "header_compared"))
+one, other = (json.loads(pathlib.Path(f, "compare.json").read_text()) for f in ("model_compared", "header_compared"))
 
 def numbers(node):
     if isinstance(node, dict):
@@ -112,4 +112,4 @@ p, q = numbers(one), numbers(other)
 assert len(p) == len(q) > 10
 assert max(abs(x - y) / (1 + abs(x)) for x, y in zip(p, q)) < 1e-4  # tolerance of the play-in
 PYTHON
-echo "ok: law and header of docs/how-to/add-an-effect.md, after $SECONDS s"
+echo "ok: user-defined model and header of docs/how-to/add-an-effect.md, after $SECONDS s"

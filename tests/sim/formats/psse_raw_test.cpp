@@ -213,7 +213,7 @@ TEST_P(PsseRawDevices, PowerFollowsFromTheFileVoltages) {
   flat.loads = "102,'1',1,1,1,10.0,0\n";
   flat.buses += "104,'WEST',138.0,1\n";
   flat.branches += "104,101,'1',0.01,0.12\n";
-  EXPECT_THAT(sentences_of([&] { flat.read(); }), HasSubstr("they are not a solution"));
+  EXPECT_THAT(sentences_of([&] { flat.read(); }), HasSubstr("they do not satisfy the power flow"));
 }
 INSTANTIATE_TEST_SUITE_P(
     Sections, PsseRawDevices,
