@@ -220,7 +220,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
   a.of.declare_hold_out(line);
   line.group("Fit");
   line.add_flag("--until-adequate", a.until_adequate,
-                "diagnose and add what is found, until the residual is noise");
+                "diagnose and add the effect found, repeatedly, until the residual is only noise");
   line.group("Network");
   line.add_flag("--retrain", a.retrain,
                 "train a network on the plant without and one with the effect, and compare them on these "
@@ -232,7 +232,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
   line.add("--train-draws", a.training.draws, "--retrain: events simulated for each network")
       .shows_default()
       .between(50, 100'000'000);
-  line.add("--train-epochs", a.training.epochs, "--retrain: passes through them")
+  line.add("--train-epochs", a.training.epochs, "--retrain: number of training epochs")
       .shows_default()
       .between(1, 100'000);
   line.add("--train-network", a.training.network, "--retrain: cnn, gru or lstm")
@@ -243,7 +243,9 @@ void declare(jobs::CommandLine& line, Arguments& a) {
            "without --dataset the machine's too, about the model's values")
       .shows_default()
       .between(1.05, 100.0);
-  line.add("--truth", a.truth, "--retrain: plant file (or blind-test's truth) to judge the networks by");
+  line.add("--truth", a.truth,
+           "--retrain: plant file with the true values (or the truth file of a blind test), with "
+           "which the networks' estimates are compared");
   line.example("swingbank add SEXS --model plant.toml --records fault1.csv fault2.csv --hold-out fault2");
   line.footer(std::string(thresholds::kExitCodes) +
               " Complete: the effect is accepted, and the residual is noise. 2: a training stopped on "

@@ -144,7 +144,8 @@ void declare(jobs::CommandLine& line, Arguments& a) {
       .shows_default()
       .excludes(system);
   line.add_flag_off("--no-fit", a.fit_switchings,
-                    "keep estimated switching times in the middle of their sample interval")
+                    "do not fit the switching times: each is the middle of the sample interval in which it "
+                    "was detected")
       .excludes(system);
   for (const jobs::Option& option : of_one_plant) option.excludes(system);
   line.example("swingbank compare --model plant.toml --records fault1.csv fault2.csv --out compared");

@@ -54,8 +54,8 @@ int run(CommandLine& line, int argc, char** argv) {
   int processes = 0;
   line.add("--fold", fold, "bus number of the generator to leave out, or all").shows_default();
   line.add("--judge-on", judged,
-           "bus number of a generator to judge on instead of the excluded one, which is then not "
-           "used (for the choice of recipes); all: each of the others in turn");
+           "bus number of a second generator to exclude from the training and to score on, "
+           "instead of the fold's own (for the choice of recipes); all: every other generator in turn");
   line.add("--processes", processes,
            "number of processes for the folds; the threads are divided among them (default: one "
            "per core; 1 if mpirun or srun started several)");

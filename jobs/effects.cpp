@@ -257,7 +257,7 @@ int run(CommandLine& line, int argc, char** argv) {
       .excludes(user_model);
   const jobs::Option json =
       line.add_flag("--json", shape.json, "print as JSON: an array with one object per effect");
-  line.add_flag("--toml", shape.toml, "the effect's block of a plant file with its default values, to paste")
+  line.add_flag("--toml", shape.toml, "print the effect's table of a plant file, with default values")
       .excludes(json);
   line.example("swingbank effects SEXS --toml");
   if (!line.parse(argc, argv)) return line.end();

@@ -45,7 +45,7 @@ void declare(jobs::CommandLine& line, Command& c) {
       .positive();
   line.add("--draws-per-shard", c.overrides.draws_per_shard, "instead of the config's").positive();
   line.add("--shard-megabytes", c.overrides.shard_megabytes, "size of a shard [MB], instead of the config's");
-  line.add("--channels", c.overrides.channels, "only these of the config's channels");
+  line.add("--channels", c.overrides.channels, "channels to record, a subset of the config's");
   line.add("--rate", c.overrides.rate, "samples per second, instead of the config's");
   line.add_flag(
       "--int16", c.overrides.int16,
@@ -54,7 +54,7 @@ void declare(jobs::CommandLine& line, Command& c) {
            "number of ranks that simulate and write one shard together (default 1)")
       .positive();
   line.add("--lease-timeout", c.options.lease_timeout,
-           "the run ends if a shard takes longer [s] (default 600; 0: never)")
+           "time limit of a shard [s]; the run ends if one takes longer (default 600; 0: no limit)")
       .not_negative();
   line.add_flag("--dedicated-master", c.options.dedicated_master,
                 "rank 0 only assigns shards and simulates none (always from 32 ranks)");
@@ -99,7 +99,7 @@ mpi::store::Part part_of(const std::string& text) {
   const auto of = slash ? std::from_chars(number.ptr + 1, end, part.of) : number;
   if (!slash || of.ec != std::errc{} || of.ptr != end || part.number < 1 || part.number > part.of)
     throw InputError(
-        {"'" + text + "'", "--part", "it is no part k/n with 1 <= k <= n", "write for example 3/16"});
+        {"'" + text + "'", "--part", "it is not of the form k/n with 1 <= k <= n", "write for example 3/16"});
   return part;
 }
 

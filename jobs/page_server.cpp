@@ -234,7 +234,9 @@ struct PageServer::State {
     json request = json::parse(r.body);
     const auto step = of->session.step(request.at("step"));
     const std::lock_guard guard(of->lock);
-    if (of->fit) throw InputError({"a second fit", "the live page", "one is running", "stop it, or wait"});
+    if (of->fit)
+      throw InputError(
+          {"a second fit", "the live page", "a fit is already running", "stop it, or wait until it ends"});
     request["plant"] = live::plant_json(step->model);
     of->fit = parts.start_fit(request);
     ++readers;

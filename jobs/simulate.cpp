@@ -65,7 +65,7 @@ std::vector<int> parse_plants(const Options& options, const grid::Grid& grid, Pr
     }
     std::string names;
     for (const auto& p : grid.plants) names += (names.empty() ? "" : ", ") + p.name;
-    problems.add("no plant " + name, "--plants", "the plants are " + names, "choose some of these");
+    problems.add("no plant " + name, "--plants", "the plants are " + names, "choose one or more of these");
   }
   if (list.empty())
     for (std::size_t i = 0; i < grid.plants.size(); ++i) list.push_back(static_cast<int>(i));
@@ -80,7 +80,8 @@ std::vector<Channel> parse_channels(const Options& options, Problems& problems) 
     if (const auto* record = find_channel(name))
       list.push_back(record->channel);
     else
-      problems.add("no channel " + name, "--channels", "the channels are " + names, "choose some of these");
+      problems.add("no channel " + name, "--channels", "the channels are " + names,
+                   "choose one or more of these");
   }
   if (list.empty())
     for (const auto& record : kChannels) list.push_back(record.channel);
@@ -424,8 +425,8 @@ int run(CommandLine& line, int argc, char** argv) {
                 "repeated id or at a missing bus; each is listed in a warning");
   line.add_choice(
       "--repeated", o.repeated, grid::kRepeatedWords,
-      "network equipment with a repeated id: refuse it, keep it under a new id (keep), or keep it only if it "
-      "improves the power balance at the file's voltages (voltages)");
+      "network equipment with a repeated id: refuse it, keep it under a new id (keep), or keep it under a "
+      "new id only if this improves the power balance at the file's voltages (voltages)");
   line.add("--ignore-model", o.ignore_models,
            "names of .dyr models to ignore, comma-separated; may be repeated")
       .comma_separated();

@@ -40,8 +40,9 @@ struct TrainingOptions {
         .positive();
     line.add("--draw-seed", simulated.seed, "with --simulate: seed of the draws; overrides the config")
         .not_negative();
-    line.add("--training-rows", training_rows,
-             "additional training rows: folder of the experiment's training_dataset");
+    line.add(
+        "--training-rows", training_rows,
+        "additional training rows: folder of the dataset generated from the experiment's training_dataset");
     line.add("--experiment", experiment, "file of configs/experiments: table, dataset, presets").required();
     line.add("--preset", preset, "preset of the experiment: quick, nightly or thesis").shows_default();
     line.add("--network", network, "network of the preset (default: its first)");
@@ -59,8 +60,11 @@ struct TrainingOptions {
         "--threads", threads,
         "number of threads, divided among the processes; default: the Slurm allocation, OMP_NUM_THREADS or the "
         "number of cores");
-    line.add("--readers", readers, "threads that read shards which do not fit in memory").shows_default();
-    line.add("--memory-limit", memory_limit, "series up to this size stay in memory [GiB]").shows_default();
+    line.add("--readers", readers,
+             "number of threads that read the shards if the dataset does not fit in memory")
+        .shows_default();
+    line.add("--memory-limit", memory_limit, "maximum size of the time series that are kept in memory [GiB]")
+        .shows_default();
     line.add_flag("--trust", trust,
                   "do not compare the shards with the hashes in the dataset's journal (0.1 s for 268 MB)");
     line.add_flag("--any-maker", any_maker,

@@ -113,7 +113,7 @@ export function summary(m, before, events) {
   }
   if (m.held_out.length) said.push(`Held out of this fit: ${m.held_out.join(", ")}.`);
   else if (m.kind === "added" && events > 1)
-    said.push("To test it on an event that the fit has not seen: undo, tick “exclude from fits” there, and add it again.");
+    said.push("To test the added effect on a held-out event: undo, tick “exclude from fits” at that event, and add the effect again.");
   if (m.kind === "added" && !m.evidence) said.push("The command at the bottom of the page also computes the evidence.");
   if (m.complete || m.fit) said.push("Save the model when you are satisfied.");
   return said.join(" ");

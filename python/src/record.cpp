@@ -175,8 +175,7 @@ void bind_point(py::module_& module) {
            "Raises InputError with every fault of the file.")
       .def_readonly(
           "plant", &Point::plant,
-          "Plant of the tested unit; a control of this plant that measures at a remote bus measures at this "
-          "point.")
+          "Plant of the tested unit. A control that measures at a remote bus measures at this point.")
       .def_property_readonly(
           "others", [](const Point& p) { return names_of(p.point.others); }, "Names of the other units.")
       .def("records", &records_at, py::arg("files"), py::kw_only(), py::arg("columns") = ColumnNames{},
@@ -211,12 +210,12 @@ void bind_record(py::module_& module) {
             return std::make_shared<Record>(from_columns(plant, columns, name));
           },
           py::arg("columns"), py::arg("plant"), py::arg("name") = "record.csv",
-          "Makes a record of arrays of shape (samples,), named as the columns of a CSV file:\n"
+          "Creates a record from arrays of shape (samples,), named as the columns of a CSV file:\n"
           "{\"t_s\": t, \"V_kV\": V, \"theta_deg\": a, \"P_MW\": P, \"Q_Mvar\": Q}.\n\n"
           "Raises InputError with every fault, as for a file.")
       .def_property_readonly(
           "name", [](const Record& r) { return r.record.name; }, "File name without folder.")
-      .def_readonly("source", &Record::source, "File as given; empty if made of arrays.")
+      .def_readonly("source", &Record::source, "File name as given; empty if created from arrays.")
       .def_property_readonly(
           "t", [](const Record& r) { return array(r.record.t); }, "Times, shape (samples,) [s].")
       .def_property_readonly("units", &units_of, "Recorded channels with their units: {\"P\": \"MW\"}.")

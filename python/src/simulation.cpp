@@ -80,7 +80,8 @@ std::vector<int> plants_of(const Grid& grid, const Words& names, Problems& probl
     const auto found = std::ranges::find(grid.plants, name, &sim::plant::Plant::name);
     if (found == grid.plants.end())
       problems.add("no plant " + name, "plants",
-                   fmt::format("the plants are {}", fmt::join(names_of(grid), ", ")), "choose some of these");
+                   fmt::format("the plants are {}", fmt::join(names_of(grid), ", ")),
+                   "choose one or more of these");
     all.push_back(static_cast<int>(found - grid.plants.begin()));
   }
   return all;
@@ -94,7 +95,8 @@ std::vector<sim::Channel> channels_of(const Words& names, Problems& problems) {
     if (const auto* record = sim::find_channel(name))
       all.push_back(record->channel);
     else
-      problems.add("no channel " + name, "channels", "the channels are " + known, "choose some of these");
+      problems.add("no channel " + name, "channels", "the channels are " + known,
+                   "choose one or more of these");
   }
   return all;
 }

@@ -84,7 +84,7 @@ void print_optimum(const fs::path& run, const std::string& name, const diagnose:
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("where the fit of the true structure ended, against a fit that begins at the truth");
+  CLI::App app("compares the diagnosis' fit of the true structure with a fit that starts at the true values");
   fs::path run;
   std::string part = "1/1";
   app.add_option("--run", run, "folder that blind-test --make wrote")->required();

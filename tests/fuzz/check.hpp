@@ -75,7 +75,7 @@ bool read_both_ways(const Read& read, sim::formats::RawOptions options, sim::net
   whole = accepted([&] { strict = read(options); });
   options.drop_refused = true;
   if (accepted([&] { lenient = read(options); })) return true;
-  require(!whole, "what is whole is read with either option");
+  require(!whole, "a network without repeated equipment is read with either option");
   return false;
 }
 

@@ -63,7 +63,7 @@ grep -q '^# Command: swingbank add SEXS' "$work/added/model.toml" || fail "the n
 grep -q "^2 'SEXS' '1' " "$work/added/model.dyr" || fail "add wrote no .dyr of the example plant"
 sed '/^bus = 2/d' "$work/added/model.toml" >"$work/unnumbered.toml"
 "$swingbank" calibrate --model "$work/unnumbered.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/unnumbered" >"$work/said"
-grep -q 'no .dyr was written: no bus number' "$work/said" || fail "no word of the records"
+grep -q 'no .dyr was written: no bus number' "$work/said" || fail "no message about the missing .dyr"
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/numbered" >/dev/null
 grep -q '^// changed or new: GENROU, SEXS' "$work/numbered/model.dyr" || fail "the records do not say what changed"
 cmp <("$swingbank" export --model "$work/numbered/model.toml" | grep -v '^//') <(grep -v '^//' "$work/numbered/model.dyr") || fail "model.dyr is not what export makes"
@@ -74,7 +74,7 @@ grep -q '^Usability: Initialises; the step response is damped' "$work/text" || f
 # given switching times are used unchanged
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --switch avr_ev1.csv=2 --switch avr_ev1.csv=2.1 --power-only \
   --draws 0 --starts 0 --out "$work/told" >/dev/null
-holds -q '2.1000 s (given)' <"$work/told/report.html" || fail "the page does not say that the instants were given"
+holds -q '2.1000 s (given)' <"$work/told/report.html" || fail "the page does not state that the switching times were given"
 
 # plain curve fitting for comparison, with known truth: table and JSON state which method is closer to the truth
 "$swingbank" calibrate --model "$work/added/model.toml" --records "$one" "$two" --hold-out avr_ev2 --power-only --draws 0 --starts 0 \
@@ -100,12 +100,12 @@ status=0
 "$swingbank" calibrate --model "$model" --records "$one" --power-only --draws 0 --starts 0 --out "$work/poor" >"$work/text" || status=$?
 ((status == 3)) || fail "exit code $status, expected 3"
 [[ -s $work/poor/model-not-adequate.toml && ! -e $work/poor/model.toml && ! -e $work/poor/model.dyr ]] ||
-  fail "a model that does not hold lies in $(ls "$work/poor")"
-grep -q '^# NOT ADEQUATE' "$work/poor/model-not-adequate.toml" || fail "the bent model does not say so"
+  fail "a model that is not adequate is in $(ls "$work/poor")"
+grep -q '^# NOT ADEQUATE' "$work/poor/model-not-adequate.toml" || fail "the model does not state that it is not adequate"
 grep -q "^next: .*swingbank diagnose --model $model" "$work/text" || fail "it does not say what is next"
 "$swingbank" compare --model "$work/poor/model-not-adequate.toml" --records "$one" --out "$work/bent" >/dev/null 2>"$work/notes" || (($? == 3))
-grep -q 'contains the result of an inadequate calibration' "$work/notes" || fail "a bent model is taken without a word"
-grep -q 'Structure not adequate' "$work/text" || fail "it does not say that something is missing: $(head -1 "$work/text")"
+grep -q 'contains the result of an inadequate calibration' "$work/notes" || fail "a model that is not adequate is accepted without a warning"
+grep -q 'Structure not adequate' "$work/text" || fail "it does not state that something is missing: $(head -1 "$work/text")"
 
 out=$work/out
 mkdir "$out"
@@ -116,7 +116,7 @@ refuses "no such records" "none1.csv" calibrate --records "$work/none1.csv" "$wo
 grep -q none2.csv "$work/stderr" || fail "only the first missing record is named"
 refuses "one event, held out" "every event is held out" calibrate --records "$one" --hold-out 1
 refuses "unknown event held out" "avr_ev2.csv" calibrate --records "$one" "$two" --hold-out avr_ev9
-refuses "instants of no record" "no --record has that file name" calibrate --records "$one" --switch avr_ev9.csv=2
+refuses "switching times of an unknown record" "no --record has that file name" calibrate --records "$one" --switch avr_ev9.csv=2
 refuses "an instant of two records" "several records are given" calibrate --records "$one" "$two" --switch 2
 refuses "unknown parameter fixed" "GENROU.Xdp" calibrate --records "$one" --fix GENROU.Xyz
 refuses "the same record twice" "two records named" calibrate --records "$one" "$one"
@@ -130,5 +130,5 @@ refuses "slot taken" "no free place" add GENCLS --records "$one"
 refuses "no effect named" "until-adequate" add --records "$one"
 refuses "named and looked for" "until-adequate" add SEXS --until-adequate --records "$one"
 refuses "one event, held out" "every event is held out" add SEXS --records "$one" --hold-out avr_ev1
-refuses "no such law" "none.toml" add SEXS --records "$one" --user-model "$work/none.toml"
+refuses "no such user-defined model" "none.toml" add SEXS --records "$one" --user-model "$work/none.toml"
 leaves_nothing "$out"

@@ -62,7 +62,7 @@ fi
 # the page as PDF, printed; --quiet prints only the result; progress on a terminal is in plain words
 if command -v chromium >/dev/null; then
   gives 3 '^Fit for purpose: no' compare --model "$bent" --pdf "$work/page #1.pdf" --quiet
-  [[ $(head -c 5 "$work/page #1.pdf") == %PDF- && ! -s $work/notes ]] || fail "no PDF, or --quiet told: $(cat "$work/notes")"
+  [[ $(head -c 5 "$work/page #1.pdf") == %PDF- && ! -s $work/notes ]] || fail "no PDF, or --quiet printed: $(cat "$work/notes")"
 fi
 python3 - "$swingbank" calibrate --model "$work/right.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/out" >"$work/tty" <<'PYTHON'
 import pty, sys

@@ -28,8 +28,8 @@ expect 0 "dataset $whole" "${make[@]}" --out "$work/parts" # nothing remains to 
 
 # Another division, the same part twice, or a simultaneous whole run: refused.
 expect 1 "-of-3.jsonl, which divides the dataset differently" "${make[@]}" --part 2/4 --out "$work/parts"
-expect 1 "it is no part k/n" "${make[@]}" --part 4/3 --out "$work/x"
-expect 1 "it is no part k/n" "${make[@]}" --part 2 --out "$work/x"
+expect 1 "it is not of the form k/n" "${make[@]}" --part 4/3 --out "$work/x"
+expect 1 "it is not of the form k/n" "${make[@]}" --part 2 --out "$work/x"
 [ ! -e "$work/x" ] || fail "a refused part left a folder"
 mkdir "$work/foreign" && touch "$work/foreign/letter"
 expect 1 "it holds files but no dataset" "${make[@]}" --part 1/2 --out "$work/foreign"

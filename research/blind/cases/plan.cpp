@@ -74,7 +74,7 @@ Hidden named(const BlindConfig& config, const std::string& word, Problems& probl
     for (const auto& kind : config.kinds) names += (names.empty() ? "" : ", ") + kind.name;
     problems.add("no kind '" + name + "'", "--kinds " + word,
                  "the config has " + names + ", and the classes none, listed, odd, pairs",
-                 "choose some of these");
+                 "choose one or more of these");
   }
   return hidden;
 }
