@@ -31,7 +31,7 @@ std::string outcome(const std::filesystem::path& file) {
     };
     if (!read_sealed(kTestKind, file, start, place)) return "no file";
   } catch (const InputError& error) {
-    EXPECT_FALSE(taken) << "the content was handed on before it was known to be whole";
+    EXPECT_FALSE(taken) << "the content was passed on before its checksum was verified";
     return error.what();
   }
   std::string text;

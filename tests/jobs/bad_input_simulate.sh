@@ -47,7 +47,7 @@ refuses "not a number" 'nan.dyr:6' simulate "$raw" "$work/nan.dyr"
 sed '/^ *19, 20, 0, /,+3d' "$raw" >"$work/part.raw"
 "$swingbank" simulate --raw "$work/part.raw" --dyr "$dyr" --out "$work/part.csv" >"$work/said" 2>&1 || fail "an island of its own is refused"
 grep -q 'islands without a slack bus get one at their largest generator: bus 34 of buses 20, 34' "$work/said" ||
-  fail "an island without a slack bus is not told: $(cat "$work/said")"
+  fail "an island without a slack bus is not reported: $(cat "$work/said")"
 awk -F", *" -v OFS=", " '/end of bus/ {loads = 1} /end of load/ {loads = 0} loads && NF > 8 {$6 = $6 * 20} {print}' \
   "$raw" >"$work/heavy.raw"
 refuses "power flow that diverges" 'heavy.raw' simulate "$work/heavy.raw" "$dyr"

@@ -28,6 +28,6 @@ for folder in "$work"/run/cases/*; do
   ends_badly "$swingbank" diagnose --model "$bent" --records "${records[@]}" --out "$work/$name/bent"
   verdict "$work/$name/whole" >"$work/expected"
   verdict "$work/$name/bent" >"$work/got"
-  cmp "$work/expected" "$work/got" || fail "$name: another verdict of the bent model: $(cat "$work/expected" "$work/got")"
+  cmp "$work/expected" "$work/got" || fail "$name: another verdict on the biased model: $(cat "$work/expected" "$work/got")"
   echo "$name: $(cat "$work/got")"
 done

@@ -38,4 +38,4 @@ grep -q 'code 127' "$work/log" || fail "said: $(cat "$work/log")"
 code=0
 ranks 3 "${tiny[@]}" --out "$work/three" --size 3 >/dev/null 2>"$work/log" || code=$?
 ((code == 1)) || fail "exit code $code with another plan"
-[[ $(grep -c 'another run' "$work/log") == 1 ]] || fail "told more than once: $(cat "$work/log")"
+[[ $(grep -c 'another run' "$work/log") == 1 ]] || fail "reported more than once: $(cat "$work/log")"

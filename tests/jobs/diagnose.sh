@@ -66,7 +66,7 @@ status=0
 wait "$diagnosing" || status=$?
 ((status == 2)) || fail "exit code $status after a signal, expected 2"
 grep -qx 'stopping' "$work/told" || fail "the signal is not acknowledged"
-grep -q 'Interrupted before a verdict' "$work/ended.txt" || fail "the end is not told"
+grep -q 'Interrupted before a verdict' "$work/ended.txt" || fail "the interruption is not reported"
 grep -q '"verdict": "interrupted"' "$work/ended/diagnosis.json" || fail "the JSON does not say that it was interrupted"
 fits_schema_of diagnosis "$work/ended/diagnosis.json"
 [[ -s $work/ended/report.html ]] || fail "no page after a signal"

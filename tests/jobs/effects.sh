@@ -63,7 +63,7 @@ PYTHON
 
 refuses "a name mistyped" "unknown effect 'GENRUO' at NAME \(the nearest names are GENROU" "$swingbank" effects GENRUO
 "$swingbank" effects GENRUO SEXX 2>"$work/both.txt" && fail "unknown names were accepted"
-(($(wc -l <"$work/both.txt") == 2)) || fail "not every unknown name was told: $(cat "$work/both.txt")"
+(($(wc -l <"$work/both.txt") == 2)) || fail "not every unknown name was reported: $(cat "$work/both.txt")"
 "$swingbank" effects REGCA1 | holds -q '^slot: converter' || fail "REGCA1 is no converter"
 refuses "a name cut short" "unknown effect 'regcb' at NAME \(the nearest names are REGC" "$swingbank" effects regcb
 refuses "a wind turbine" "unknown effect 'WT3G1' at NAME \(this model of inverters, wind or storage is not supported yet\)" "$swingbank" effects WT3G1

@@ -50,7 +50,7 @@ case_of three "3,4,'1',0.01,0.08" "2,3,4,'1',1,1,1,0,0,2,'',1" \
   0.01,0.10,100,0.02,0.20,100,0.03,0.30,100,1.0,0.0 1.0 1.025 1.0
 said=$(simulate three "${fault[@]}" 2>&1) || fail "zero star leg: $said"
 grep -q '^stable at 3 s' <<<"$said" || fail "zero star leg: $said"
-grep -Eq '\b5\b.*pu|bus 5' <<<"$said" && fail "the star point is told as a bus: $said"
+grep -Eq '\b5\b.*pu|bus 5' <<<"$said" && fail "the star point is reported as a bus: $said"
 grep -q 'winding at bus 3 of 2-3-4' <<<"$said" || fail "the leg of zero is not named: $said"
 head -n 1 "$work/three.csv" | grep -q bus5 && fail "a column of the star point"
 simulate three --buses 5 >/dev/null 2>"$work/said" && fail "--buses 5 was taken"
@@ -69,7 +69,7 @@ below "${p#-}" 1e-6 || fail "the unit behind its open winding delivers $p pu"
 case_of radial "3,4,'1',0.01,0.08" "$gsu" 0.003,0.09,100 1.0 1.0
 for integrator in reference lanes; do
   said=$(simulate radial --trip 1:4:1:1 --trip 3:4:1:1 --integrator $integrator 2>&1) || fail "shed load: $said"
-  grep -q 'bus 4 at 1 s: 150.00 MW, 40.00 Mvar' <<<"$said" || fail "shed load is not told: $said"
+  grep -q 'bus 4 at 1 s: 150.00 MW, 40.00 Mvar' <<<"$said" || fail "shed load is not reported: $said"
   grep -q ' at 3 s' <<<"$said" || fail "shed load: $said"
   cp "$work/radial.csv" "$work/$integrator.csv"
 done

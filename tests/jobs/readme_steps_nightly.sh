@@ -50,8 +50,8 @@ grep -q "^2 'GENROU' '1' " mine_unit.dyr || fail "export: $(cat mine_unit.dyr)"
 # Diagnosis of the biased model: the same as of the original.
 status=0
 swingbank diagnose --model calibrated/model-not-adequate.toml --records event*.csv --out bent >said 2>said.errors || status=$?
-((status == 3)) || fail "diagnose of the bent model: exit code $status: $(tail -n 5 said.errors)"
+((status == 3)) || fail "diagnose of the biased model: exit code $status: $(tail -n 5 said.errors)"
 grep -q 'started from the values before' said.errors || fail "it does not say what it began with: $(cat said.errors)"
 verdict bent >bent.verdict
-cmp mine bent.verdict || fail "the bent model's verdict is another: $(cat mine bent.verdict)"
+cmp mine bent.verdict || fail "the verdict on the biased model differs: $(cat mine bent.verdict)"
 refuses "export of a biased model" "not adequate" swingbank export --model calibrated/model-not-adequate.toml

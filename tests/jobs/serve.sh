@@ -93,7 +93,7 @@ for ((k = 0; k < 600; ++k)); do
   grep -q '"failed"' stream && break
   sleep 0.1
 done
-grep -q "there is no effect of that name" stream || fail "the failure is not told: $(<stream)"
+grep -q "there is no effect of that name" stream || fail "the failure is not reported: $(<stream)"
 for ((k = 0; k < 100; ++k)); do # the fit's process ends just after its last message
   [[ $(answer "$api/fit?s=$session" -d '{"kind":"calibrate","step":0}') == 200 ]] && break
   sleep 0.1
@@ -109,7 +109,7 @@ for ((k = 0; k < 300; ++k)); do
   grep -q 'ended without a result' stream && break
   sleep 0.1
 done
-grep -q 'ended without a result' stream || fail "the crash of a fit is not told: $(tail -c 300 stream)"
+grep -q 'ended without a result' stream || fail "the crash of a fit is not reported: $(tail -c 300 stream)"
 expect 200 "$api/step?s=$session&k=0"
 
 # nothing is written before saving; the saved model is that of the step

@@ -32,11 +32,11 @@ PYTHON
 
 refuses "no file" "cannot read the user-defined model at $work/none.toml" simulate --user-model "$work/none.toml" --out "$work/x.csv"
 printf 'name = "L"\ntitle = "t"\nsource = "s"\noutput = "Vs"\naction = "add"\nvalue = "1 + nothing"\n' >"$work/bad.toml"
-refuses "a fault in a law" "unknown name nothing in value at $work/bad.toml:6:14" \
+refuses "an error in a user-defined model" "unknown name nothing in value at $work/bad.toml:6:14" \
   simulate --user-model "$work/bad.toml" --out "$work/x.csv"
 refuses "no such plant" "no plant 77" simulate --attach 77:SEXS --out "$work/x.csv"
 refuses "no such effect" "unknown effect 'SEXSLAW'" simulate --attach 2:SEXSLAW --out "$work/x.csv"
 printf 'name = "L"\ntitle = "t"\nsource = "s"\noutput = "Tm"\naction = "add"\nvalue = "V"\n' >"$work/moves.toml"
-refuses "a law that does not rest" "has no steady state at.*it adds 1.045 pu to Tm" \
+refuses "a user-defined model without a steady state" "has no steady state at.*it adds 1.045 pu to Tm" \
   simulate --user-model "$work/moves.toml" --attach 2:L --out "$work/x.csv"
 [[ ! -e $work/x.csv ]] || fail "a refused run left a file"

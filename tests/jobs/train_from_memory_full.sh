@@ -37,7 +37,7 @@ for storage in float32 int16; do
   train "$storage-memory" --simulate "$work/$storage/tiny_data.toml"
   diff <(told "$storage-disk") <(told "$storage-memory") || fail "$storage: other results from memory"
 done
-cmp -s <(told float32-disk) <(told int16-disk) && fail "int16 is no other dataset"
+cmp -s <(told float32-disk) <(told int16-disk) && fail "the int16 dataset gives the same result as float32"
 train again --simulate "$work/float32/tiny_data.toml"
 cmp <(told float32-memory) <(told again) || fail "another time, other results"
 train seed --simulate "$work/float32/tiny_data.toml" --draw-seed 8

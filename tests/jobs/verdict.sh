@@ -35,10 +35,10 @@ done
 rm -r "$work/out"
 { limits wrong && printf '[P.fault]\nmxe = -1\nmax = 3\n[left_out]\nafter_fault = 9\n'; } >"$work/wrong.toml"
 refuses "wrong limits" 'wrong.toml:5' compare --model "$bent" --accept "$work/wrong.toml" --out "$work/out"
-for line in 6 8; do grep -q "wrong.toml:$line" "$work/stderr" || fail "line $line is not told: $(cat "$work/stderr")"; done
+for line in 6 8; do grep -q "wrong.toml:$line" "$work/stderr" || fail "line $line is not reported: $(cat "$work/stderr")"; done
 refuses "no such limits" 'dtr-test, dtr-simulation' calibrate --accept nonesuch --out "$work/out"
 mkdir "$work/bin"
 refuses "a PDF without a browser" 'no Chromium at --pdf' env PATH="$work/bin" "$swingbank" compare --model "$bent" --records "$one" \
   --pdf "$work/none/page.pdf" --accept nonesuch --out "$work/out"
-for words in 'there is no .*none' 'dtr-simulation'; do grep -q "$words" "$work/stderr" || fail "'$words' is not told at once"; done
+for words in 'there is no .*none' 'dtr-simulation'; do grep -q "$words" "$work/stderr" || fail "'$words' is not reported at once"; done
 [[ ! -e $work/out ]] || fail "files left behind"

@@ -23,7 +23,7 @@ done
 # for another number of draws per shard.
 points=("$configs/ieee39_genrou_points.toml" --draws 60 --progress none)
 "$generate" "${points[@]}" --draws-per-shard 15 --out "$work/points" >"$work/log" 2>&1 || { cat "$work/log"; fail "operating points"; }
-grep -q '30 operating points; rejected: ' "$work/log" || { cat "$work/log"; fail "redraws are not told"; }
+grep -q '30 operating points; rejected: ' "$work/log" || { cat "$work/log"; fail "redraws are not reported"; }
 ranks 3 "$generate" "${points[@]}" --draws-per-shard 15 --writer-ranks 3 --out "$work/points3" >"$work/log" 2>&1 || { cat "$work/log"; fail "operating points of three ranks"; }
 "$generate" "${points[@]}" --draws-per-shard 15 --out "$work/killed" >"$work/log" 2>&1 &
 pid=$!

@@ -14,7 +14,7 @@ mkdir "$work/held"
   "${make[@]}" --repair --out "$work/held" >"$work/repair" 2>&1 9>&- &
   expect 1 "dataset in use at $work/held (locked by process 12 on elsewhere)" "${make[@]}" --out "$work/held"
   wait $! && fail "a repair went on in a locked folder"
-  grep -q "dataset in use" "$work/repair" || fail "a repair was not told: $(cat "$work/repair")"
+  grep -q "dataset in use" "$work/repair" || fail "the repair did not report that the dataset is in use: $(cat "$work/repair")"
 )
 [ "$(ls -A "$work/held")" = .lock ] || fail "a refused run wrote $(ls -A "$work/held")"
 expect 0 "dataset $whole" "${make[@]}" --out "$work/held"

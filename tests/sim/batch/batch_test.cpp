@@ -100,7 +100,7 @@ TEST(BatchKernel, TheSampleAtASwitchingIsTheValueJustBefore) {
   EXPECT_NEAR(v[61], 0.0, 1e-11);  // bolted: V = 0
   EXPECT_NEAR(v[72], 0.0, 1e-11);  // t = 0.6 s: still faulted
   EXPECT_GT(v[73], 0.5);
-  for (int k = 61; k <= 72; ++k) EXPECT_EQ(theta[k], theta[60]) << "theta is held while V = 0";
+  for (int k = 61; k <= 72; ++k) EXPECT_EQ(theta[k], theta[60]) << "theta must keep its value while V = 0";
 }
 
 TEST(BatchKernel, LostRunIsReportedAndKeepsItsLastSample) {

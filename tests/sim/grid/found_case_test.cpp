@@ -119,7 +119,7 @@ TEST(FoundCase, CompletesOrCutsRecordsOfAnotherLengthOnRequest) {
   EXPECT_EQ(grid.plants[0].machine.p[1], 0.0);
   EXPECT_THAT(places(grid, "missing values at the end of records"),
               ElementsAre(HasSubstr("has 1 of 2 values: D = 0 (")))
-      << "each value that was filled in is named";
+      << "the remark must name every completed value";
   EXPECT_THAT(places(grid, "surplus values at the end of records"),
               ElementsAre(HasSubstr("has 3 of 2 values: 7 (")));
   options.complete_records = Lacking::standard;

@@ -55,7 +55,7 @@ TEST_F(ReadingsTest, MirroredAngleIsReported) {
 TEST_F(ReadingsTest, ThirdOfThePowerIsReported) {
   EXPECT_EQ(kind(scaled(1.0 / 3)), "one_phase");
   model.dispatch = {sound.P[0] / 3 * sound.base.mva, sound.Q[0] / 3 * sound.base.mva, sound.V[0]};
-  EXPECT_EQ(kind(scaled(1.0 / 3)), "") << "the case has the unit at that power";
+  EXPECT_EQ(kind(scaled(1.0 / 3)), "") << "this power equals the unit's dispatch in the case";
 }
 TEST_F(ReadingsTest, LatePowerIsReportedWithItsDelay) {
   constexpr std::size_t kLate = 12;

@@ -164,7 +164,7 @@ TEST(CompareTest, PlaysInAngleIntegratedFromFrequency) {
   auto& machine = right.model.plant.machine;
   machine.p[static_cast<std::size_t>(machine.effect->parameter_index("H"))] *= 1.1;
   std::vector<EventComparison> wrong = {compare_event(right.model, right.record)};
-  EXPECT_FALSE(judge(wrong).adequate) << "turns do not hide it";
+  EXPECT_FALSE(judge(wrong).adequate) << "phase jumps at switching times must not hide the model error";
 }
 /// In a converter that regulates Q, the voltage's noise passes two integrals and moves Q by several times its
 /// own noise. This slow noise contains no information on the start of the fault. If it is taken for white

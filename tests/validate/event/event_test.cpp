@@ -50,7 +50,7 @@ TEST(PrepareEvents, UsesGivenSwitchingTimes) {
   ASSERT_EQ(e.switchings.size(), 2U);
   for (std::size_t k = 0; k < 2; ++k) {
     EXPECT_DOUBLE_EQ(e.switchings[k].time, r.switched[k]);
-    EXPECT_EQ(e.switchings[k].uncertainty, 0) << "it would be fitted";
+    EXPECT_EQ(e.switchings[k].uncertainty, 0) << "a switching time with an uncertainty is fitted";
   }
   EXPECT_TRUE(e.filtered_samples.empty());
   EXPECT_EQ(e.start.samples, 91);
@@ -107,7 +107,7 @@ TEST(PrepareEvents, IgnoresSwingWiderThanFilteredSteps) {
   const auto found = switching::VoltageSteps(r)
                          .find(switching::kStepThreshold / 2, switching::StepShape::filtered)
                          .switchings;
-  ASSERT_EQ(found.size(), 3U) << "the swing was meant to be taken for a smeared jump";
+  ASSERT_EQ(found.size(), 3U) << "the search for filtered steps alone must find the swing too";
   ASSERT_GT(found[2].uncertainty, found[0].uncertainty + r.step());
   const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
   const FitEvent e = prepare_events(model, {r}).front();

@@ -38,11 +38,11 @@ struct Bounded {
 
 TEST(AtBounds, ClampsDrawsToTheBounds) {
   Bounded valley(1, 0, 1.0, {});
-  ASSERT_GT(valley.solve(), 1.0) << "the bound was meant to stop the search";
+  ASSERT_GT(valley.solve(), 1.0) << "the bound must stop the first search";
   ASSERT_TRUE(valley.bounds.activate());
   EXPECT_LT(valley.solve(), 1e-9);
   EXPECT_NEAR(valley.at[1], 3, 1e-6);
-  EXPECT_FALSE(valley.bounds.activate()) << "the same is held";
+  EXPECT_FALSE(valley.bounds.activate()) << "no further parameter may be clamped";
 }
 TEST(AtBounds, KeepsFixedParameters) {
   Bounded valley(0.5, 1, 1.0, {0});

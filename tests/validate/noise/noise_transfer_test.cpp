@@ -57,7 +57,7 @@ TEST_F(NoiseTransferTest, AddsLowerNoiseTransferBackToEveryCost) {
   EXPECT_GT(f.transfer_deficit, 0.05 * noise_transfer_.own());
   EXPECT_DOUBLE_EQ(criterion(f), evidence + f.transfer_deficit);
   EXPECT_DOUBLE_EQ(data_cost(f), data + f.transfer_deficit);
-  EXPECT_EQ(penalised(f), searched) << "a search minimises what is there";
+  EXPECT_EQ(penalised(f), searched) << "the correction must not change the search's objective";
 }
 TEST_F(NoiseTransferTest, GivesNoCreditForHigherNoiseTransfer) {
   Fit f = example_.fitted({"H"}, {.iterations = 0});

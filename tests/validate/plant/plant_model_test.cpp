@@ -101,7 +101,8 @@ TEST_F(PlantModelTest, ThreadsReadPlantsWithEquallyNamedUserModels) {
     EXPECT_EQ(models[k].library.find("MINE"), effect);
     EXPECT_EQ(effect->default_parameters().at(0), std::stod(depths[k]));
   }
-  EXPECT_NE(difference(models[0], models[1]), "") << "laws of other texts are other effects";
+  EXPECT_NE(difference(models[0], models[1]), "")
+      << "user-defined models of different texts are different effects";
   EXPECT_EQ(load_plant_model(test::source("configs/plants/ieee14_bus2.toml")).library.find("MINE"), nullptr);
 }
 TEST_F(PlantModelTest, RequiresEveryParameter) {
@@ -218,7 +219,7 @@ TEST_F(PlantModelTest, RecognisesDataOnTheSystemBase) {
                              HasSubstr("set base_mva to the machine's rating (about 10000 MVA)"))));
   EXPECT_THAT(load(replaced(example_text(), "H = 6.54", "H = 654")).warnings,
               ElementsAre(AllOf(HasSubstr("H = 654 s"), HasSubstr(": 0.1 to 20 s"), HasSubstr("toml:23"))))
-      << "one slip is no other base";
+      << "a single wrong value does not indicate another per-unit base";
   // A smaller factor between the bases suffices for values that are unusual anyway: unit 34 of a public IEEE
   // 39-bus case, on 1000 MVA.
   EXPECT_THAT(load(on_system(example_text(), "2.6", "6.7")).warnings,

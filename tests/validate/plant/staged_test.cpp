@@ -50,7 +50,7 @@ TEST(StagedPlantTest, ReportsAllFaultsTogether) {
     parse_plant_model(
         with("\n[[event]]\nkind = \"vref_step\"\ntime = 2\nsise = 1\n[[event]]\nkind = \"trip\"\n"),
         "x.toml");
-    FAIL() << "bad events were taken";
+    FAIL() << "invalid events were accepted";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("event[0].size"));
     EXPECT_THAT(error.what(), HasSubstr("unknown key event[0].sise"));

@@ -36,7 +36,7 @@ TEST(Allowances, FollowTheSensitivityOfTheComparedChannels) {
   // s.
   EXPECT_EQ(all[1], kMostAllowance);
   EXPECT_NEAR(all[2], 0.2 / 0.02, 1.5);
-  EXPECT_EQ(all[3], 1.0) << "what is not seen about the start may act behind a limit";
+  EXPECT_EQ(all[3], 1.0) << "a state that is unobservable at the start may act once a limit is reached";
   EXPECT_EQ(all[4], kMostAllowance);
 }
 TEST(Allowances, AreSmallestForAComparedState) {

@@ -183,7 +183,7 @@ TEST_F(Limited, LimiterTimeHasSensitivities) {
     EXPECT_LT(std::sqrt(off_linear / own), 0.04) << name;
     limiter_moved += name.starts_with("EFD") || name.starts_with("TIME") ? 1 : 0;
   }
-  EXPECT_EQ(limiter_moved, 8) << "it was meant to act";
+  EXPECT_EQ(limiter_moved, 8) << "the limiter must act in this test";
 }
 TEST_F(LinearSensitivitiesTest, WithSaturatedStatorBehindTransformer) {
   const auto* gentpj = sim::library::compiled().find("GENTPJ");

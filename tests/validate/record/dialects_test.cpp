@@ -102,7 +102,7 @@ TEST(RecordDialectTest, TimeStamps) {
       advanced[at + 4] = '1';
     const Record r = parse_record(advanced, "r.csv", kTestBase);
     expect_all_values(r);
-    EXPECT_DOUBLE_EQ(r.rate(), 60) << "milliseconds are a rounding";
+    EXPECT_DOUBLE_EQ(r.rate(), 60) << "time stamps rounded to milliseconds must be accepted";
     EXPECT_THAT(r.notes, Contains(HasSubstr("rounded to 1 ms")));
     EXPECT_THAT(r.start, HasSubstr("12:00:59.200"));
   }

@@ -281,7 +281,7 @@ TEST(LostFramesTest, KeepVoltage_WhenAnotherQuantityIsMissing) {
   }
   const Record ends = parse_record(with("", 0, 2), "r.csv", kTestBase);
   EXPECT_EQ(ends.samples(), 900);
-  EXPECT_NEAR(ends.Q[0], 0.1, 1e-9) << "held before the first value";
+  EXPECT_NEAR(ends.Q[0], 0.1, 1e-9) << "before its first value the channel has that value";
   EXPECT_EQ(std::ranges::count(ends.lost, 1), 2);
   EXPECT_THAT(field_faults(with("", 400, 8)), ElementsAre(AllOf(HasSubstr("Q_pu"), HasSubstr("8 samples"))));
   // Without an angle the angle is integrated from f, whose missing values are lost frames too.

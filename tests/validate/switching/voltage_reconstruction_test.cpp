@@ -85,7 +85,7 @@ TEST(VoltageReconstruction, RestoresShortFault) {
   EXPECT_NEAR(events.front().switchings[0].time, kOn, 5e-5);
   EXPECT_NEAR(events.front().switchings[1].time, Fault{}.off, 5e-5);
   EXPECT_LT(worst_within(events.front()), 2e-3);
-  EXPECT_GT(before, 2e-2) << "there was nothing to bring back";
+  EXPECT_GT(before, 2e-2) << "without restoration the voltage must have an error";
 }
 TEST(VoltageReconstruction, IsInsensitiveToNoise) {
   std::vector<SwitchedRecord> events = {event(2e-4)};

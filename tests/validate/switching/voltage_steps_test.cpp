@@ -55,7 +55,8 @@ TEST(FindSwitchings, FindsStepDuringSwing) {
 }
 TEST(FindSwitchings, IgnoresSwingNextToSharpSteps) {
   const record::Record r = near_loss();
-  ASSERT_GT(switchings_of(r).size(), 2U) << "the swing was meant to be taken for a smeared jump";
+  ASSERT_GT(switchings_of(r).size(), 2U)
+      << "with either step shape, the swing must look like a filtered step";
   ASSERT_EQ(step_shape_of({r}, kStepThreshold), StepShape::sharp);
   const auto [found, filtered_samples] = times_of(r, StepShape::sharp);
   ASSERT_EQ(found.size(), 2U);
@@ -188,7 +189,7 @@ TEST(DetectTest, FindsIsolatedSmallStep) {
   const auto found = detect_switchings(far_loss(0));
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NEAR(found[0].time, 5.01, 0.5 / 30 + 1e-6);
-  EXPECT_TRUE(detect_switchings(far_loss(2e-4)).empty()) << "noise hides it";
+  EXPECT_TRUE(detect_switchings(far_loss(2e-4)).empty()) << "the step is below the noise";
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ TEST_F(BlindScoring, PairIsInTheSet_WhenOneEntryNamesBoth) {
   };
   EXPECT_TRUE(in_set({"confusable", {"EXST1", "HYGOV"}, {"EXST1 + TGOV1", "TGOV1 + SEXS"}, "excitation", 1}));
   EXPECT_FALSE(in_set({"confusable", {"EXST1", "HYGOV"}, {"EXST1 + TGOV1", "SEXS + HYGOV"}, "excitation", 1}))
-      << "one each is not both";
+      << "one correct effect in each entry is not the pair";
   EXPECT_FALSE(in_set({"confusable", {"SEXS"}, {"TGOV1"}, "excitation", 1}));
   EXPECT_FALSE(in_set({"missing", {"EXST1", "HYGOV"}, {"SEXS + TGOV1"}, "excitation", 1}));
   const BlindScore s = score();
@@ -167,7 +167,8 @@ TEST_F(BlindScoring, ComparesProbabilitiesWithTheTruth) {
   add({sexs, droop}, says({{"TGOV1 + SEXS", 0.9}, {"SEXS", 0.1}}));
   const BlindScore s = score();
   const auto right = [&](std::size_t k) { return s.cases[k].forecast().right; };
-  EXPECT_THAT(right(0), testing::ElementsAre(0, 1, 0, 0, 0)) << "a pair is more than what is hidden";
+  EXPECT_THAT(right(0), testing::ElementsAre(0, 1, 0, 0, 0))
+      << "a pair must not count as its single hidden effect";
   EXPECT_THAT(right(1), testing::ElementsAre(1, 0));
   EXPECT_THAT(right(2), testing::ElementsAre(0, 1, 0));
   EXPECT_THAT(right(3), testing::ElementsAre(1, 0, 0));
