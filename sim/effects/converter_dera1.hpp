@@ -100,7 +100,7 @@ struct Model : shared::ControlledCurrent<Model> {
   };
   static constexpr Source defaults_from = literature::psid("DERA, in its test 42");
   static constexpr Source bounds_from = renewable::kWecc;
-  static constexpr Source kActs = literature::own("narrow enough that faults exceed it");
+  static constexpr Source kActs = literature::own("narrower than the voltage changes at faults");
   static constexpr Source kTrips = literature::own("trip settings of category II in IEEE Std 1547-2018");
   static constexpr Source kHertz = literature::own("around 50 and 60 Hz; 0 and 999: never");
   static constexpr Parameter parameters[] = {
@@ -154,8 +154,8 @@ struct Model : shared::ControlledCurrent<Model> {
        kHertz},
       {"fh", "fh", "Hz", 62.0, 50.0, 999.0, kNoNullValue, "frequency above which all units trip", kTrips,
        kHertz},
-      {"tfl", "tfl", "s", 0.16, 0.0, 999.0, kNoNullValue, "time below fl until they trip", kTrips},
-      {"tfh", "tfh", "s", 0.16, 0.0, 999.0, kNoNullValue, "time above fh until they trip", kTrips},
+      {"tfl", "tfl", "s", 0.16, 0.0, 999.0, kNoNullValue, "time below fl until all units trip", kTrips},
+      {"tfh", "tfh", "s", 0.16, 0.0, 999.0, kNoNullValue, "time above fh until all units trip", kTrips},
       {"Tg", "Tg", "s", 0.02, 1e-3, 0.5, kNoNullValue, "time constant of the converters"},
       {"rrpwr", "rrpwr", "pu/s", 99.0, 0.01, 999.0, kNoNullValue, "fastest rise of the active current"},
       {"Tv", "Tv", "s", 0.02, 0.0, 1.0, kNoNullValue, "lag of the tripped fraction (0: none)"},
@@ -371,8 +371,9 @@ std::string Model::steady(const T*, T* c, Signals<T>& s, T* x) {
     return fmt::format("at V = {:.4f} pu a part of its units is tripped: Vl1 = {:g} pu, Vh1 = {:g} pu",
                        value_of(V), value_of(c[Vl1]), value_of(c[Vh1]));
   if (value_of(c[ftripFlag]) == 1.0 && (value_of(c[f_under]) > 0.0 || value_of(c[f_over]) < 0.0))
-    return fmt::format("rated frequency trips it: fl and fh differ from it by {:g} and {:g} pu",
-                       value_of(c[f_under]), value_of(c[f_over]));
+    return fmt::format(
+        "its units trip at rated frequency: fl and fh differ from rated frequency by {:g} and {:g} pu",
+        value_of(c[f_under]), value_of(c[f_over]));
   x[Vf] = V;
   x[Pf] = x[PI] = x[Pset] = x[Pord] = c[pref] = P;
   x[Iqlag] = q - of_voltage(c, V, zero);

@@ -228,12 +228,12 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
     Core::reference(c, s);
     const auto within = [&](const char* what, int low, int high) {
       return value_of(renewable::voltage_dip(s.V, c[low], c[high])) > 0.0
-                 ? fmt::format("V = {:.4f} pu is {}: the limits are {:g} and {:g} pu", value_of(s.V), what,
+                 ? fmt::format("V = {:.4f} pu {}: the limits are {:g} and {:g} pu", value_of(s.V), what,
                                value_of(c[low]), value_of(c[high]))
                  : std::string();
     };
-    if (auto why = within("a voltage dip", Core::vdip, Core::vup); !why.empty()) return why;
-    if (auto why = within("one at which it is blocked", vblkl, vblkh); !why.empty()) return why;
+    if (auto why = within("is a voltage dip", Core::vdip, Core::vup); !why.empty()) return why;
+    if (auto why = within("blocks the converter", vblkl, vblkh); !why.empty()) return why;
     x[after] = x[after_p] = x[blocked] = T(0.0);
     x[Vcomp] = compensated(c, s);
     x[kept_q] = s.Efd;

@@ -39,7 +39,8 @@ struct Model {
                    "maximum field voltage (ceiling) at rated terminal voltage", kCase}),
       lower_limit({"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue,
                    "minimum field voltage at rated terminal voltage",
-                   literature::own("a bridge inverts slightly less than it rectifies")}),
+                   literature::own(
+                       "the negative ceiling of a bridge is slightly smaller than its positive ceiling")}),
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "drop of the ceilings per field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "gain of the rate feedback"},
       {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"}};

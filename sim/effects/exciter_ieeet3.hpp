@@ -82,7 +82,7 @@ struct Model {
     const shared::ValueCheck values(name, parameters, p, where, problems);
     values.require_divisors({TE});
     values.require_time(TF, p[KF] != 0, "KF = 0");
-    values.require_positive({KA, VBMAX}, "there would be no exciter");
+    values.require_positive({KA, VBMAX}, "the regulator would not control the field voltage");
     values.refuse_negative({TR, TA, KF, KI, KE});
     values.require_positive({KP}, "the terminal's voltage feeds the exciter");
     values.require_above(VRMAX, VRMIN, "the range of Vr must not be empty");

@@ -22,7 +22,8 @@ struct Model : shared::SimplifiedExciter<Model> {
       kK,
       shared::with(kTE, 0.1, literature::powerful_cases("ACTIVSg2000.dyr")),
       lower_limit({"EMIN", "EMIN", "pu", -4.0, -100.0, 0.0, kNoNullValue, "minimum field voltage",
-                   literature::own("a bridge inverts slightly less than it rectifies; CIM has -5")}),
+                   literature::own("the negative ceiling of a bridge is slightly smaller than its "
+                                   "positive ceiling; CIM has -5")}),
       upper_limit({"EMAX", "EMAX", "pu", 5.0, 0.5, 100.0, kNoNullValue, "maximum field voltage (ceiling)"})};
   static constexpr int dyr_columns[] = {TAoverTB, TB, K, TE, EMIN, EMAX};
   enum { coefficients = own_coefficients };

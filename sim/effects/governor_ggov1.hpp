@@ -74,7 +74,7 @@ struct Model {
   };
   static constexpr Source defaults_from = literature::openipsl("test of GGOV1");
   static constexpr Source bounds_from = literature::own(
-      "the sign that the equations need; at least five times CIM's GovCT1, or 99 and 999 (none)");
+      "sign required by the equations; at least five times CIM's GovCT1, or 99 and 999 (none)");
   static constexpr Parameter parameters[] = {
       {"Rselect", "Rselect", "code", 1.0, -2.0, 1.0, kNoNullValue,
        "droop feedback: 1 electrical power, 0 none, -1 valve, -2 requested stroke", literature::cim("GovCT1"),

@@ -37,8 +37,8 @@ struct Model {
   flag 0:  b(w) --> [ 1/(1 + s Td) ] --> [ s K1/(1 + s Tf) + s^2 K2/(1 + s Tf)^2 ] --y
            u - Rgate CV - y --> [ Ki/s ] --> CV
   CV, and what Ki integrates: Pmin to Pmax
-  CV - GV --> [ Kg/(1 + s Tp), VELclose to VELopen ] --> [ 1/s, Pmin to Pmax ] --> gate --> [ play ] --> GV
-  play: GV follows the gate at the distance db2 (0: no backlash), within 20 ms to be integrable
+  CV - GV --> [ Kg/(1 + s Tp), VELclose to VELopen ] --> [ 1/s, Pmin to Pmax ] --> gate --> [ backlash ] --> GV
+  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms to be integrable
   PGV: linear between (0, 0), (GV1, PGV1) to (GV6, PGV6), (1, 1); the ends only if the curve rises there; no
        points: PGV = GV
   TW dq/dt = H0 - h            h = (q/PGV)^2, PGV not below 0.01

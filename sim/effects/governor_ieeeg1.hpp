@@ -172,7 +172,8 @@ inline void Model::check_as(std::string_view model, const double* p, const std::
                 "give UO > 0 and UC < 0");
   values.require_above(PMAX, PMIN, "the range of the valve must not be empty");
   values.refuse(!(p[K1] + p[K3] + p[K5] + p[K7] > 0), values.text(K1, K3, K5, K7),
-                "the stages share the turbine's power", "give shares with a sum > 0");
+                "these fractions of the stages add up to the turbine's power",
+                "give fractions with a sum > 0");
   for (const int i : {JBUS, M, K2, K4, K6, K8})
     values.refuse(p[i] != 0, i, "a second, low-pressure generator is not modelled",
                   "give 0 and put its share into K1, K3, K5 or K7");

@@ -29,9 +29,9 @@ struct Model {
   static constexpr std::string_view description = R"(
   ref + R dPref - b(w) - R back --> [ 1/(1 + s TD) ] --> [ KP + KI/s + s KD/(1 + s TF) ] --> CV
          back: CV (TT = 0), P/(1 + s TT) (TT > 0)         b(w): 0 within +-db1, beyond it the distance to the edge
-  CV - GV --> [ KG/(1 + s TP), VELclose to VELopen ] --> [ 1/s, PMIN to PMAX ] --> gate --> [ play ] --> GV
+  CV - GV --> [ KG/(1 + s TP), VELclose to VELopen ] --> [ 1/s, PMIN to PMAX ] --> gate --> [ backlash ] --> GV
   GV --> [ NGV ] --> [ (1 + s Aturb Tturb)/(1 + s Bturb Tturb) ] --> Pm
-  play: GV follows the gate at the distance db2 (0: no backlash), within 20 ms to be integrable
+  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms to be integrable
   NGV: linear between (GV1, PGV1) and (GV5, PGV5), up to the last ascending point; no points: GV
   Power and gate are per unit of TRATE (0: the machine's base). VELclose: only the magnitude counts.
 )";

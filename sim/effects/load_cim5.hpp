@@ -81,11 +81,11 @@ struct Model {
   static constexpr Source kSteep = literature::own("twice the flux, and steeper than a motor's saturation");
   static constexpr Source kTorque = literature::own("five times the torque; the fifth power");
   static constexpr Source defaults_from = literature::own("off: no second cage, no saturation, no relay");
-  static constexpr Source bounds_from = literature::own(
-      "the sign that the equations need; several times the values of the task force's motors");
+  static constexpr Source bounds_from =
+      literature::own("sign required by the equations; several times the values of the task force's motors");
   static constexpr Parameter parameters[] = {
       {"IT", "IT", "code", 1.0, 1.0, 2.0, kNoNullValue, "circuit of the two cages",
-       literature::own("with one cage both are the same"), shared::kCode},
+       literature::own("with one cage both circuits are identical"), shared::kCode},
       {"Ra", "Ra", "pu", 0.013, 0.0, 0.2, 0.0, "stator resistance", kMotor},
       {"Xa", "Xa", "pu", 0.067, 0.0, 0.5, kNoNullValue, "stator leakage reactance", kMotor},
       {"Xm", "Xm", "pu", 3.8, 0.5, 10.0, kNoNullValue, "magnetising reactance", kMotor},
@@ -347,8 +347,8 @@ struct Model {
     }
     if (!(value_of(select(found, T(1.0), T(0.0))) > 0.5))
       return fmt::format(
-          "at this voltage the motor pulls out at {:.4g} pu of its base, the load is {:.4g} pu", most,
-          value_of(power));
+          "the motor's pull-out power at this voltage is {:.4g} pu of its base, below the load of {:.4g} pu",
+          most, value_of(power));
     for (int k = 0; k < halvings; ++k) {
       const T middle = T(0.5) * (low + high);
       const auto above = power < drawn(middle);

@@ -121,7 +121,7 @@ struct Model {
        kUnread},
       {"UVT", "UVT", "pu", 0.48, 0.0, 1.0, 0.0, "voltage below which it trips"},
       {"OV1", "OV1", "pu", 1.8, 1.0, 99.0, kNoNullValue, "voltage above which it trips"},
-      {"OV2", "OV2", "pu", 2.0, 1.0, 99.0, kNoNullValue, "voltage above which it trips sooner"},
+      {"OV2", "OV2", "pu", 2.0, 1.0, 99.0, kNoNullValue, "second voltage above which it trips, after OVtm2"},
       {"UVtm1", "UVtm1", "s", 0.93, 0.0, 999.0, kNoNullValue, "time below UV1 until UVSBmax is the limit"},
       {"UVtm2", "UVtm2", "s", 6.7, 0.0, 999.0, kNoNullValue, "time below UVT until it trips"},
       {"OVtm1", "OVtm1", "s", 0.91, 0.0, 999.0, kNoNullValue, "time above OV1 until it trips"},
@@ -301,8 +301,9 @@ std::string Model::steady(const T* p, T* c, Signals<T>& s, T* x) {
   x[B] = x[PI] = (s.Vi * s.Ir - s.Vr * s.Ii) / square_2;
   const double b = value_of(x[B]), v = value_of(V);
   if (b < value_of(p[Bmin]) || b > value_of(p[Bmax]))
-    return fmt::format("it would start at B = {:.4f} pu, and Bmin, Bmax are {:g}, {:g} pu", b,
-                       value_of(p[Bmin]), value_of(p[Bmax]));
+    return fmt::format(
+        "its susceptance at the operating point, B = {:.4f} pu, is outside Bmin to Bmax, {:g} to {:g} pu", b,
+        value_of(p[Bmin]), value_of(p[Bmax]));
   if (v < std::max(value_of(p[UV1]), value_of(p[UVT])) || v > std::min(value_of(p[OV1]), value_of(p[OV2])))
     return fmt::format(
         "its protection acts at V = {:.4f} pu: UV1, UVT, OV1, OV2 are {:g}, {:g}, {:g}, {:g} pu", v,
@@ -325,8 +326,8 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   values.refuse_negative({Kpv, Kiv, Xc1, Vdbd2}, "the control would be unstable");
   values.refuse(p[T2] == 0.0, T2, "the voltage would form an algebraic loop", "give a value > 0");
   for (const auto& [high, low_one] : {std::pair<int, int>{Bmax, Bmin}, {Bshrt, Bmax}, {Vdbd1, Vdbd2}})
-    values.refuse(!(p[high] >= p[low_one]), values.text(high, low_one), "the first must be the wider limit",
-                  "swap them");
+    values.refuse(!(p[high] >= p[low_one]), values.text(high, low_one),
+                  "the first value must not be below the second", "swap them");
   values.refuse(!(p[Vemax] >= 0.0 && p[Vemin] <= 0.0), values.text(Vemax, Vemin),
                 "an error of 0 lies between them", "give Vemax >= 0 >= Vemin");
 }

@@ -48,7 +48,7 @@ struct Model {
        "d-axis subtransient open-circuit time constant"},
       {"Tqop", "T'qo", "s", 0.8, 0.0, 5.0, kNoNullValue,
        "q-axis transient open-circuit time constant (0, with X'q = Xq: no such circuit)", kAsEffect,
-       literature::own("0 is no such circuit; more than twice Kundur's 2 s (table 4.2)")},
+       literature::own("0: no such circuit; upper bound more than twice Kundur's 2 s (table 4.2)")},
       {"Tqopp", "T''qo", "s", 0.06, 0.005, 0.5, kNoNullValue,
        "q-axis subtransient open-circuit time constant", shared::kSlowDamper},
       {"H", "H", "s", 5.0, 0.1, 20.0, kNoNullValue, "inertia constant", shared::kThermalInertia},

@@ -28,7 +28,7 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"rate", "lambda", "1/s", 0.0, 0.0, 100.0, 0.0, "gaps per second of valid record"},
       {"length", "L", "s", 0.1, 1e-3, 60.0, kNoNullValue, "mean length of a gap",
-       literature::own("six samples of 60 a second")}};
+       literature::own("six samples at 60 samples/s")}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     if (!(p[rate] >= 0))

@@ -23,7 +23,7 @@ struct Model {
   enum P { skew };
   static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from =
-      literature::own("beyond a second two records are of different events");
+      literature::own("a delay above 1 s means records of different events");
   static constexpr Parameter parameters[] = {
       {"skew", "tau", "s", 0.0, -1.0, 1.0, 0.0, "delay of the current"}};
 

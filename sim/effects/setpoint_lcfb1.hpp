@@ -27,8 +27,8 @@ struct Model {
   dGref moves the governor's reference in the governor's own unit: speed where a droop follows it, else power.
 )";
   enum P { FBF, PBF, FB, TPELEC, DB, EMAX, KP, KI, IRMAX };
-  static constexpr Source defaults_from =
-      literature::own("a few minutes' return of the power, within half of a droop of 5 %; CIM has 0");
+  static constexpr Source defaults_from = literature::own(
+      "returns the power to its set-point within a few minutes, by at most half of a 5 % droop; CIM has 0");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"FBF", "FBF", "code", 0.0, 0.0, 1.0, kNoNullValue, "1: the frequency adds to the error",

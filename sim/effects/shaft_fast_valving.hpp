@@ -34,7 +34,7 @@ struct Model {
       {"start", "t1", "s", 1.0, 0.0, 1e5, kNoNullValue, "start of the closing", shared::kAfterRest},
       {"closing", "Tc", "s", 0.15, 0.0, 100.0, kNoNullValue, "closing time (0: instantaneous)",
        literature::kundur("17.1.5, 0.1 to 0.2 s"), literature::own("longer than any valve takes")},
-      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "time for which they stay closed",
+      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "time for which the valves stay closed",
        literature::own("slightly longer than the closing")},
       {"opening", "To", "s", 3.0, 0.0, 1e5, kNoNullValue, "reopening time (0: instantaneous)",
        literature::kundur("17.1.5, over seconds")}};

@@ -44,7 +44,7 @@ struct Model {
        "time from the fault until the valves begin to close"},
       {"closing", "Tc", "s", 0.15, 1e-3, 100.0, kNoNullValue, "closing time",
        literature::kundur("17.1.5, 0.1 to 0.2 s"), literature::own("longer than any valve takes")},
-      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "time for which they stay closed",
+      {"hold", "Th", "s", 0.2, 0.0, 1e5, kNoNullValue, "time for which the valves stay closed",
        literature::own("slightly longer than the closing")},
       {"opening", "To", "s", 3.0, 1e-3, 1e5, kNoNullValue, "reopening time",
        literature::kundur("17.1.5, over seconds")}};

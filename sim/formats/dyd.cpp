@@ -288,7 +288,7 @@ std::vector<DyrRecord> chosen_records(const DydSurvey& survey, const std::string
       return hit;
     };
     if (std::ranges::any_of(options.ignore, is)) {
-      spdlog::warn("{}: {} on line {} is ignored, as requested", name, names[1], record.line);
+      spdlog::warn("{}: {} on line {} is ignored (--ignore-model)", name, names[1], record.line);
       continue;
     }
     chosen.push_back(record);

@@ -66,7 +66,7 @@ class DyrReader {
     if (!problems_.empty())
       for (const DyrRecord& record : out_) problems_.add(record.faults);
     problems_.raise();
-    if (!ignored_.empty()) spdlog::warn("{}: ignored, as requested: {}", name_, ignored_);
+    if (!ignored_.empty()) spdlog::warn("{}: ignored (--ignore-model): {}", name_, ignored_);
     return std::move(out_);
   }
   DyrSurvey survey() {

@@ -139,7 +139,7 @@ void RawReader::switching(Fields& f, const network::Shunt& shunt) {
   s.least = static_cast<double>(f.number(band + 1, "VSWLO", 1.0L));
   s.regulated = regulated_by(s.bus, f.integer(band + 2, "SWREG", 0), "SWREG = ", f);
   if (s.least > s.most && options_.drop_refused) {
-    network_.remark("switched shunts with VSWLO above VSWHI stay at BINIT, as requested",
+    network_.remark("switched shunts with VSWLO above VSWHI stay at BINIT (--drop-refused)",
                     place + " (" + f.where() + ")");
     return;
   }

@@ -80,9 +80,10 @@ void RawReader::transformer(const Record& first) {
     if (!record) return;  // the section reports the truncation
     if (record->fields.size() == 1 && (ends_section(*record) || ends_file(*record))) {
       put_back(*record);  // section() handles the end of the section
-      problems_.add("a transformer with " + std::to_string(rows.size()) + " lines", f.where(),
-                    k == 0 ? "one with two windings has 4" : "one with three windings has 5",
-                    "complete the record");
+      problems_.add(
+          "a transformer with " + std::to_string(rows.size()) + " lines", f.where(),
+          k == 0 ? "a transformer with two windings has 4" : "a transformer with three windings has 5",
+          "complete the record");
       return;
     }
     rows.push_back(std::move(*record));
@@ -240,7 +241,7 @@ void RawReader::correct_impedances() {
     const auto found = tables_.find(c.table);
     if (found == tables_.end() || found->second.empty()) {
       if (options_.drop_refused)
-        network_.remark("missing impedance correction tables are ignored, as requested",
+        network_.remark("missing impedance correction tables are ignored (--drop-refused)",
                         c.name + " = " + std::to_string(c.table) + " (" + c.where + ")");
       else if (!units_only_)
         problems_.add(c.name + " = " + std::to_string(c.table), c.where, "there is no such correction table",

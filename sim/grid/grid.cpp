@@ -93,8 +93,9 @@ class GridMaker {
     if (!refused.empty() && !options_.drop_refused && effect->slot == Slot::machine) refused_.insert(key);
     for (const Problem& p : refused.list()) {
       if (options_.drop_refused)
-        grid_.network.remark("records with values that their model does not accept are ignored, as requested",
-                             p.what + " (" + p.where + ")");
+        grid_.network.remark(
+            "records with values that their model does not accept are ignored (--drop-refused)",
+            p.what + " (" + p.where + ")");
       else
         refuse(p, given.line);
     }
@@ -357,7 +358,7 @@ class GridMaker {
       network::SwitchedShunt& s = n.switched[stepped.which];
       const auto mvar = [&](double b) { return fmt::format("{:.2f} Mvar", b * n.base_mva); };
       if (stepped.susceptance != s.present)
-        n.remark("switched shunts were stepped, as requested",
+        n.remark("switched shunts were stepped (--switched-shunts step)",
                  bus_text(s.bus) + " " + mvar(s.present) + " to " + mvar(stepped.susceptance));
       if (!stepped.in_band)
         n.remark("switched shunts have no step within their voltage band",
@@ -399,7 +400,7 @@ class GridMaker {
       network::Load load{
           g.bus, "-" + g.id, -s, {}, {}, bus.area, bus.zone, bus.owner, network::LoadKind::generator};
       grid_.network.remark(
-          "generators without a machine model become negative loads, as requested",
+          "generators without a machine model become negative loads (--net-generators)",
           unit_text(k) + fmt::format(" {:.2f} MW, {:.2f} Mvar", s.real() * grid_.network.base_mva,
                                      s.imag() * grid_.network.base_mva));
       grid_.network.loads.push_back(std::move(load));

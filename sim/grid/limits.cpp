@@ -74,7 +74,7 @@ class Widener {
     value(l) = l.given + l.way * far;
     const plant::Block& block = plant_.controls[l.block];
     const Parameter& p = block.effect->parameters[l.parameter];
-    grid_.network.remark("limits are widened to the operating point, as requested",
+    grid_.network.remark("limits are widened to the operating point (--widen-limits)",
                          fmt::format("{} of {} at generator {}: {:g} becomes {:.6g} {}", p.name,
                                      block.effect->name, plant_.name, l.given, value(l), p.unit));
   }

@@ -159,7 +159,8 @@ std::string describe_loads(const Grid& grid) {
     for (const plant::Consumer& c : grid.loads)
       if (c.block.effect == effect) text += std::exchange(separator, ", ") + c.name;
   }
-  return grid.loads.size() == grid.network.loads.size() ? text : text + "; the others constant impedance";
+  return grid.loads.size() == grid.network.loads.size() ? text
+                                                        : text + "; all other loads: constant impedance";
 }
 
 }  // namespace swingbank::sim::grid

@@ -29,7 +29,7 @@ void choose_load(Grid& grid, const std::string& text, const std::string& where, 
 /// and a load with zero consumption are problems.
 void set_load(Grid& grid, int load, plant::Block block, const std::string& where, Problems& problems);
 
-/// Returns the load models as text for a run's output: "ZIP at 4, 8/2; the others constant impedance".
+/// Returns the load models as text for a run's output: "ZIP at 4, 8/2; all other loads: constant impedance".
 std::string describe_loads(const Grid& grid);
 
 }  // namespace swingbank::sim::grid

@@ -205,7 +205,7 @@ class UnitReader {
     for (const auto& name : choice_.models.ignore)
       if (capitals(name) == record.model || capitals(name) == record.user) {
         unit_.notes.push_back(
-            fmt::format("{} of line {} ignored, as requested", name_of(record), record.line));
+            fmt::format("{} of line {} ignored (--ignore-model)", name_of(record), record.line));
         return true;
       }
     return false;

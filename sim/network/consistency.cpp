@@ -244,7 +244,7 @@ void settle_duplicates(Network& n, const std::vector<Duplicate>& duplicates, boo
   if (duplicates.empty()) return;
   if (!by_voltages) {
     for (const Duplicate& d : duplicates)
-      n.remark("duplicate equipment is kept under a new id, as requested", kept_as(d));
+      n.remark("duplicate equipment is kept under a new id (--repeated keep)", kept_as(d));
     return;
   }
   const FileBalance balance(n, duplicates, devices);
@@ -380,7 +380,7 @@ void replace_devices(Network& n, const std::vector<Device>& devices, DeviceRepla
   if (at_bus.empty() || !problems.empty()) return;
   if (how == DeviceReplacement::none) {
     for (const auto& [b, names] : at_bus)
-      n.remark("equipment without a model is ignored, as requested",
+      n.remark("equipment without a model is ignored (--devices none)",
                names + " at bus " + std::to_string(at(n, b).number));
     return;
   }

@@ -148,8 +148,7 @@ int Reader::signal(const Node& n, const std::string& key, int index) {
   const SignalRecord& s = kSignals[static_cast<std::size_t>(index)];
   if (s.made_in != Slot::machine && !(s.made_in < user_model_.slot)) {
     problem(key, n.at, "signal " + n.name,
-            fmt::format("a user-defined model that computes {} is evaluated before it is known",
-                        user_model_.output_name()),
+            fmt::format("{} is computed before this signal is available", user_model_.output_name()),
             "read a signal that comes earlier, or its value at the operating point");
     return graph_.constant(0.0);
   }

@@ -30,7 +30,7 @@ refuses "mapping without a model" "'GENFOO' at --map-model" simulate "$raw" "$wo
 refuses "ignored model that is not there" 'no model GENBAR' simulate "$raw" "$work/unknown.dyr" --ignore-model GENBAR
 simulate "$raw" "$work/unknown.dyr" --map-model GENFOO=GENROU >/dev/null
 sed '4s/^/30 "EXTRA" 1 1 2 3 \/\n/' "$dyr" >"$work/extra.dyr"
-simulate "$raw" "$work/extra.dyr" --ignore-model extra | grep 'ignored, as requested: EXTRA on line 4' >/dev/null
+simulate "$raw" "$work/extra.dyr" --ignore-model extra | grep 'ignored (--ignore-model): EXTRA on line 4' >/dev/null
 rm "$out"/run.*
 refuses "frequency that contradicts the .raw" 'BASFRQ = 60 Hz' simulate "$raw" "$dyr" --frequency-hz 50
 echo "mpc.version = '2';" >"$work/case.m"

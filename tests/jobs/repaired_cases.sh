@@ -34,7 +34,7 @@ cp "$work/run.csv" "$work/named.csv"
 
 case_of twice '' "1,4,'1',0.01,0.10,0.02"
 refuses "repeated branch" "branch 1-4 circuit '1' appears twice at .*twice.raw:[0-9]+ .*--repeated voltages" simulate twice
-simulate twice --repeated keep | holds -q "kept under a new id, as requested: branch 1-4 circuit '1' .*as 'R1'" || fail "the kept branch is not named"
+simulate twice --repeated keep | holds -q "kept under a new id (--repeated keep): branch 1-4 circuit '1' .*as 'R1'" || fail "the kept branch is not named"
 cmp -s "$work/run.csv" "$work/named.csv" || fail "the kept branch is not the one of an id of its own"
 simulate twice --repeated voltages | holds -q "is ignored, because the file's voltages contradict it" || fail "the voltages do not decide"
 cmp -s "$work/run.csv" "$work/whole.csv" || fail "the branch that the voltages do not show is there"

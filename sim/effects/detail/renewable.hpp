@@ -12,7 +12,7 @@ inline constexpr double kDipBand = 2e-3;  ///< width below Vdip and above Vup ov
 inline constexpr double kNoLimit = 1e6;   ///< limit that never acts [pu]
 
 inline constexpr Source kWecc = literature::own(
-    "the sign that the equations need; beyond the values of WECC's guides and the case files, or 99 and "
+    "sign required by the equations; wider than the values of WECC's guides and the case files, or 99 and "
     "999 (none)");
 inline constexpr Source kFlag = literature::derived("the defined codes");
 inline constexpr Source kBus = literature::psse("bus numbers, up to 999997; 0: the unit's own terminal");

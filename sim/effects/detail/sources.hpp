@@ -7,9 +7,9 @@ namespace swingbank::sim::effects::shared {
 
 // Bounds.
 inline constexpr Source kBeyondCases = literature::own(
-    "the sign that the equations need; of the case files' values only 999 (none) lies outside");
+    "sign required by the equations; all values of the case files except 999 (none) lie inside");
 inline constexpr Source kNoCases =
-    literature::own("the sign that the equations need; a wide range, because no case file has the model");
+    literature::own("sign required by the equations; a wide range, because no case file has the model");
 inline constexpr Source kShare = literature::derived("a fraction");
 inline constexpr Source kCode = literature::derived("the defined codes");
 inline constexpr Source kNotModelled = literature::derived("0 only: nothing else is modelled");
@@ -38,8 +38,8 @@ inline constexpr Source kTwoAreas = literature::kundur("example 12.6, the two-ar
 inline constexpr Source kThermalInertia = literature::kundur("within table 3.2, thermal units");
 inline constexpr Source kSlowDamper = literature::own("just above Kundur's 0.02 to 0.05 s (table 4.2)");
 inline constexpr Source kMildSaturation = literature::psid("GAST/dyn_data.dyr");
-inline constexpr Source kNever = literature::own("never, in a record of less than a day");
+inline constexpr Source kNever = literature::own("later than the end of any record shorter than a day");
 inline constexpr Source kFewSeconds = literature::own("a few seconds");
-inline constexpr Source kAfterRest = literature::own("after one second of steady state");
+inline constexpr Source kAfterRest = literature::own("start after one second of steady state");
 
 }  // namespace swingbank::sim::effects::shared

@@ -10,7 +10,7 @@ int Identities::bus_index(const std::map<int, int>& buses, int number, const std
   if (found != buses.end()) return found->second;
   const std::string bus = "bus " + std::to_string(number);
   if (options_.drop_refused)
-    network_.remark("equipment at buses that are not in the bus section is ignored, as requested",
+    network_.remark("equipment at buses that are not in the bus section is ignored (--drop-refused)",
                     section + " record at " + bus + " (" + fields.where() + ")");
   else
     problems_.add(bus + " is not in the bus section", fields.where(), "the record refers to it",
@@ -23,7 +23,7 @@ bool Identities::once(const std::string& identity, const psse::Fields& fields) {
   if (fresh) return true;
   const std::string first = "already on line " + std::to_string(found->second);
   if (options_.drop_refused)
-    network_.remark("equipment that appears a second time is ignored, as requested",
+    network_.remark("equipment that appears a second time is ignored (--drop-refused)",
                     identity + " (" + fields.where() + ", " + first + ")");
   else
     problems_.add(identity + " appears twice", fields.where(), "it is " + first,

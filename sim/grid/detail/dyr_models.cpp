@@ -113,8 +113,8 @@ std::string compare_reactance(const plant::Plant& plant, const plant::Block& blo
   block.effect->get<double>().machine.source_impedance(block.p.data(), r, x);
   constexpr double tolerance = 1e-4;  // [pu]: files round reactances to four or five digits
   if (zx == 0.0 || std::abs(zx - x) <= tolerance) return {};
-  return fmt::format("{}: generator {} has ZX = {} pu in {} but {} pu in its {}; the latter is used", where,
-                     plant.name, zx, raw.origin, x, block.effect->dyr_name);
+  return fmt::format("{}: generator {} has ZX = {} pu in {} but {} pu in its {}; the value of {} is used",
+                     where, plant.name, zx, raw.origin, x, block.effect->dyr_name, block.effect->dyr_name);
 }
 
 }  // namespace
@@ -271,12 +271,12 @@ Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking la
   const std::string record_text = fmt::format("{} of '{}' at bus {} has {} of {} values", record.model,
                                               record.id, record.bus, has, takes);
   if (has < takes)
-    return {true, "missing values at the end of records are set to zero or to defaults, as requested",
+    return {true, "missing values at the end of records are set to zero or to defaults (--complete-records)",
             fmt::format("{}: {} ({})", record_text, fill(effect, record.values, lacking), where)};
   const std::vector<double> surplus(record.values.begin() + static_cast<std::ptrdiff_t>(takes),
                                     record.values.end());
   record.values.resize(takes);
-  return {true, "surplus values at the end of records are ignored, as requested",
+  return {true, "surplus values at the end of records are ignored (--complete-records)",
           fmt::format("{}: {} ({})", record_text, fmt::join(surplus, ", "), where)};
 }
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record) {

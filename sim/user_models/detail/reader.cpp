@@ -34,7 +34,8 @@ std::vector<std::string> Reader::in_file_order(const std::string& table) {
       continue;
     }
     config_.ignore(table + "." + name);
-    problems_.add("name '" + name + "' in " + table, config_.where(table), "expressions could not use it",
+    problems_.add("name '" + name + "' in " + table, config_.where(table),
+                  "an expression cannot contain this name",
                   "use letters, digits and _, not beginning with a digit");
   }
   std::ranges::sort(list, {}, [&](const std::string& name) { return config_.position(table + "." + name); });
@@ -141,8 +142,8 @@ void Reader::read_references() {
                 fmt::format("the operating point does not prescribe {}", user_model_.output_name()),
                 "give an expression of parameters and values at the operating point");
       else if (user_model_.searched.size() > 1)
-        problem(key, 0, "a second 'solve'", "one output determines one reference",
-                "give the other as an expression");
+        problem(key, 0, "a second 'solve'", "the output determines only one reference",
+                "give this reference as an expression");
     } else if (auto e = expression(key)) {
       named_.emplace(name, Named{Named::Kind::reference, std::move(*e)});
     }

@@ -138,7 +138,7 @@ void refused(const Changes& changes, Complex power, const char* part) {
 }
 
 TEST(LoadCim5, RefusesParametersThatCannotBeIntegrated) {
-  refused({{"Mbase", 20.0}}, {0.8, 0.3}, "the motor pulls out at ");
+  refused({{"Mbase", 20.0}}, {0.8, 0.3}, "the motor's pull-out power at this voltage is ");
   refused({}, {-0.8, 0.3}, "a motor draws power");
   const Effect& effect = *library::compiled().find("CIM5");
   for (const auto& [name, value] : {std::pair{"VI", 0.7},

@@ -317,7 +317,7 @@ TEST(EpcRepairs, RepeatedLineIsKeptAndDanglingLoadLeftOutOnRequest) {
   ASSERT_EQ(n.branches.size(), 3u);
   EXPECT_EQ(n.branches[2].circuit, "R1");
   EXPECT_EQ(n.branches[2].x, 0.24);
-  EXPECT_THAT(places(n, "ignored, as requested"), ElementsAre(HasSubstr("load record at bus 177")));
+  EXPECT_THAT(places(n, "ignored (--drop-refused)"), ElementsAre(HasSubstr("load record at bus 177")));
   options.repeated = Repeated::voltages;  // the file's voltages fit a single line
   EXPECT_FALSE(parse_epc(c.text(), "case.epc", options).branches[2].in_service);
 }

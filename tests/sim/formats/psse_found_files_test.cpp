@@ -237,7 +237,7 @@ TEST(FoundFiles, OmitsOrInfersDevicesOnRequest) {
   options.devices = network::DeviceReplacement::none;
   const network::Network n = parse_raw(c.text(), "case.raw", options);
   EXPECT_EQ(n.loads.size(), 2u);
-  EXPECT_THAT(places(n, "ignored, as requested"), ::testing::SizeIs(1));
+  EXPECT_THAT(places(n, "ignored (--devices none)"), ::testing::SizeIs(1));
 }
 
 TEST(FoundFiles, DropsRepeatedRecordsOnRequest) {

@@ -94,7 +94,7 @@ TEST(RepeatedBranch, IsKeptOnRequestWhateverTheVoltages) {
   ASSERT_THAT(n.branches, SizeIs(4));
   EXPECT_EQ(n.branches[2].circuit, "R1");
   EXPECT_EQ(n.branches[3].circuit, "R2");
-  EXPECT_THAT(places(n, "kept under a new id, as requested"), SizeIs(2));
+  EXPECT_THAT(places(n, "kept under a new id (--repeated keep)"), SizeIs(2));
 }
 
 TEST(RepeatedEquipment, OfEveryKindIsDecidedByTheVoltages) {
@@ -144,7 +144,7 @@ TEST(MissingBus, EquipmentIsLeftOutAndNamedOnRequest) {
   EXPECT_THAT(problems_of([&] { read(c, {}); }), SizeIs(8));
   EXPECT_THAT(sentences_of([&] { read(c, {}); }), HasSubstr("leave the equipment out with --drop-refused"));
   const network::Network n = read(c, dropping());
-  EXPECT_THAT(places(n, "not in the bus section is ignored, as requested"), SizeIs(8));
+  EXPECT_THAT(places(n, "not in the bus section is ignored (--drop-refused)"), SizeIs(8));
   EXPECT_THAT(places(n, "not in the bus section")[0], HasSubstr("load record at bus 177 (case.raw:"));
   const network::PowerFlow a = network::solve_power_flow(n), b = network::solve_power_flow(RawCase{}.read());
   ASSERT_EQ(n.buses.size(), 3u);
@@ -166,8 +166,8 @@ TEST(MissingReference, IsReplacedAndNamed) {
   EXPECT_THAT(dropped.switched, IsEmpty());
   EXPECT_EQ(dropped.shunts.back().admittance.imag(), 0.05);
   EXPECT_EQ(dropped.branches[2].x, 0.1);
-  EXPECT_THAT(places(dropped, "stay at BINIT, as requested"), SizeIs(1));
-  EXPECT_THAT(places(dropped, "correction tables are ignored, as requested"),
+  EXPECT_THAT(places(dropped, "stay at BINIT (--drop-refused)"), SizeIs(1));
+  EXPECT_THAT(places(dropped, "correction tables are ignored (--drop-refused)"),
               ElementsAre(HasSubstr("TAB1 = 3")));
 }
 
