@@ -81,7 +81,7 @@ class Check : Findings {
       for (std::size_t k = 0; k < c->size(); ++k)
         if (!std::isfinite((*c)[k]))
           refuse("not_finite", fmt::format("sample {}", k), "a value is not finite",
-                 "fill the gap at the source, or cut the record before it");
+                 "fill the gap at the source, or end the record before it");
     return none();
   }
 
@@ -94,7 +94,7 @@ class Check : Findings {
       warn("dropout",
            fmt::format("{} samples with V, P and Q exactly zero, first at t = {:.4g} s", zeros, r_.t[first]),
            "they are played in as a fault at the terminals; instruments write zeros where data were lost",
-           "cut the record before it (--until) if there was no such fault");
+           "end the record before it (--until) if there was no such fault");
     if (signals_.longest_repeat >= 3)
       warn("held_samples",
            fmt::format("{} samples in a row equal the previous one, from t = {:.4g} s",
@@ -281,17 +281,16 @@ class Check : Findings {
     const double hz = signals_.angle_rate / constants::turn;
     if (std::abs(hz) < 2) return;
     const bool ten = near(std::abs(hz), 10, 0.1);
-    refuse(
-        ten ? "nominal_frequency" : "angle_frame",
-        fmt::format("the angle rotates at {:.3g} Hz before the event", hz),
-        ten ? fmt::format(
-                  "the record is of a {:g} Hz grid, or its angle has another reference frame than the model's {:g} Hz",
-                  other_hz(), plant_.frequency)
-            : std::string("it is not in the frame of nominal frequency, or its unit is wrong"),
-        ten ? fmt::format("set frequency_hz = {:g} in the plant file, or take that plant's own record",
-                          other_hz())
-            : std::string(
-                  "give the angle of the phasor against nominal frequency, in rad or degrees as named"));
+    refuse(ten ? "nominal_frequency" : "angle_frame",
+           fmt::format("the angle rotates at {:.3g} Hz before the event", hz),
+           ten ? fmt::format(
+                     "the record is of a {:g} Hz grid, or its angle is not relative to the model's {:g} Hz",
+                     other_hz(), plant_.frequency)
+               : std::string("it is not in the frame of nominal frequency, or its unit is wrong"),
+           ten ? fmt::format("set frequency_hz = {:g} in the plant file, or take that plant's own record",
+                             other_hz())
+               : std::string(
+                     "give the angle of the phasor against nominal frequency, in rad or degrees as named"));
   }
 
   void speed() {
@@ -300,7 +299,8 @@ class Check : Findings {
     if (std::abs(s) < 0.07) return;
     const std::string what = fmt::format("a speed deviation of {:.4g} pu", s);
     if (near(s, 1, 0.05))
-      refuse("speed_unit", what, "the speed is 1 at nominal", "name the column omega_pu");
+      refuse("speed_unit", what, "the column contains the speed, not its deviation",
+             "name the column omega_pu");
     else if (near(s, -1, 0.05))
       refuse("speed_unit", what, "the column holds deviations", "name the column speed_pu");
     else if (other_nominal(1 + s))
@@ -369,7 +369,7 @@ class Check : Findings {
            fmt::format(
                "P = {:.3g} MW and Q = {:.3g} Mvar before the event, {:.2g} % of the machine's {:g} MVA",
                signals_.P.level * r_.base.mva, signals_.Q.level * r_.base.mva, 100 * share, plant_.mva),
-           "the unit idled, or P and Q are in another unit than their columns say",
+           "the unit idled, or the headings name wrong units of P and Q",
            "check their units, and base_mva of the record and of the plant");
   }
 
@@ -387,7 +387,7 @@ class Check : Findings {
       warn("time_skew",
            fmt::format("P and Q step {:.0f} ms {} the voltage", 1e3 * std::abs(delay) * r_.step(),
                        delay > 0 ? "after" : "before"),
-           "they were stamped by different clocks or filters", "shift them so that their steps coincide");
+           "V and P, Q have different clocks or filter delays", "shift them so that their steps coincide");
     const StepFit as_is = fit_steps(r_, steps_, delay);
     std::vector<std::pair<const Mistake*, double>> explain;  // with the residual share
     for (const auto& m : mistakes()) {

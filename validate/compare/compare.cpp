@@ -210,7 +210,7 @@ void explain(EventComparison& e, switching::StepShape step_shape, bool tried, co
       turns += (turns.empty() ? "" : ", ") + fmt::format("{:+.1f}°", s.turn * constants::degrees_in_radian);
     e.notes.push_back(
         "Angle steps of " + turns +
-        " were fitted at the switching times: frequency measurements under-report angle steps.");
+        " were fitted at the switching times, because a measured frequency lacks part of an angle step.");
   }
   if (e.switchings.empty())
     e.notes.push_back(fmt::format(

@@ -215,8 +215,8 @@ report::Table worst_fitness_table(const Fitness& f) {
 report::Table movement_table(const Fitness& f) {
   report::Table table{
       "Change of P and Q after the last switching: RMS of the measured deviation from the mean before the event, "
-      "RMS of modelled − measured in % of it, and regression coefficient of the modelled on the measured deviation "
-      "(1: equal). A star marks a value above its limit.",
+      "RMS of modelled − measured in % of the measured RMS, and regression coefficient of the modelled on the "
+      "measured deviation (1: equal). A star marks a value above its limit.",
       {"event", "channel", "measured change", "regression coefficient", "error"},
       {}};
   for (const Movement& m : f.movements)

@@ -33,8 +33,8 @@ report::Table usability_table(const HandedIn& model) {
       fmt::format(
           "Simulated for {:g} s from the operating point of each event, against an infinite bus behind {:g} pu "
           "on {:g} MVA. Drift: largest deviation of P or Q without a disturbance; reported without a limit. "
-          "Oscillation: least damped mode of P and Q after a {}; amplitude: that of the mode just after the step, in "
-          "P or Q, whichever is larger. Damped: the machine stays in synchronism, the changes of P and Q decrease from "
+          "Oscillation: least damped mode of P and Q after a {}; amplitude: the larger of this mode's amplitudes in P "
+          "and Q just after the step. Damped: the machine stays in synchronism, the changes of P and Q decrease from "
           "the first to the second half, and the damping ratio is positive (Kundur 1994, 12.1).",
           usability::kStudyDuration, usability::kStudyReactance, model.mva, u.step),
       {"event", "P [MW]", "Q [Mvar]", "V [pu]", "initialises", "drift [% of MVA]", "oscillation [Hz]",

@@ -208,8 +208,8 @@ void parameters_part(report::Document& page, const std::vector<PageParameter>& p
   const bool fitted = std::ranges::any_of(parameters, [](const auto& p) { return std::isfinite(p.low); });
   report::Table table{
       fitted
-          ? "Values before and after the fit, with 95 % intervals. Variance reduction: 1 − posterior variance / prior "
-            "variance of the parameter, by the records."
+          ? "Values before and after the fit, with 95 % intervals. Variance reduction by the records: 1 − posterior "
+            "variance / prior variance of the parameter."
           : "Model parameters (unchanged).",
       {"parameter", "unit", fitted ? "before" : "value"},
       {}};

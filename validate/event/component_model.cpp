@@ -31,10 +31,10 @@ std::string left_out_of(const sim::plant::Plant& plant, Component component) {
 plant::PlantModel component_model(plant::PlantModel model, Component component) {
   if (component == Component::plant) return model;
   if (const auto names = left_out_of(model.plant, component); !names.empty())
-    model.warnings.push_back(fmt::format("{} alone: {} of the plant file {} ignored; the record replaces {}",
-                                         record::component_name(component), names,
-                                         names.find(',') == std::string::npos ? "is" : "are",
-                                         names.find(',') == std::string::npos ? "it" : "them"));
+    model.warnings.push_back(fmt::format(
+        "{} is tested alone: {} of the plant file {} ignored, because the record replaces {}",
+        record::component_name(component), names, names.find(',') == std::string::npos ? "is" : "are",
+        names.find(',') == std::string::npos ? "it" : "them"));
   const sim::Slot slot = component == Component::exciter ? sim::Slot::exciter : sim::Slot::governor;
   if (component != Component::machine &&
       std::ranges::none_of(model.plant.controls, [&](const auto& b) { return b.effect->slot == slot; }))

@@ -60,7 +60,7 @@ void check_part(Config& c, const std::string& at) {
   for (const char* key : {".P_MW", ".Q_Mvar"})
     if (share == c.has(at + key))
       c.problem(at,
-                share ? at + " with share and " + (key + 1) : at + " without share and without " + (key + 1),
+                share ? at + " has both share and " + (key + 1) : at + " has neither share nor " + (key + 1),
                 "the power of the unit is given either by share or by P_MW and Q_Mvar", "give one of them");
 }
 

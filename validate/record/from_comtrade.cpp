@@ -35,7 +35,7 @@ std::vector<double> samples_of(const WaveSet& set, std::size_t phase, SampleFaul
     for (std::size_t k = 0; k < samples.size(); ++k) {
       if (!std::isfinite(samples[k]))
         faults.add(w->channel->id, w->channel->id, k, "the value is marked missing",
-                   "cut the record before it, or export it again");
+                   "end the record before it, or export it again");
       samples[k] *= w->scale * (w->phase.reversed ? -1 : 1);
     }
     return samples;
@@ -105,7 +105,8 @@ void check_terminal(const std::vector<Wave>& waves, const ReadOptions& options, 
   problems.add(fmt::format("no circuit '{}'", options.terminal), file,
                circuits.empty() ? "neither the channels' circuits nor their names identify one"
                                 : fmt::format("the file has {}", fmt::join(circuits, ", ")),
-               circuits.empty() ? "leave it off the file's name" : "choose one of them");
+               circuits.empty() ? fmt::format("remove '#{}' from the file name", options.terminal)
+                                : "choose one of them");
 }
 
 Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, Record about,
@@ -131,7 +132,7 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
   for (std::size_t k = 0; k < even.place.size(); ++k)
     if (even.place[k] != static_cast<double>(k)) {
       faults.add("step", "waveforms that are not evenly sampled", std::min(k, comtrade.t.size() - 1),
-                 "samples are missing or repeated there",
+                 "samples are missing or repeated at this time",
                  "take the section before or after it (--until, --from)");
       break;
     }
@@ -201,7 +202,7 @@ Record from_phasors(const Comtrade& comtrade, Record about, const RecordBase& ba
     for (std::size_t k = 0; k < c.values.size(); ++k)
       if (!std::isfinite(c.values[k]))
         faults.lose(c.id, c.id, k, "the value is marked missing",
-                    "fill it at the source, or cut the record before it");
+                    "fill the gap at the source, or end the record before it");
     if (c.skew != 0)
       about.notes.push_back(
           fmt::format("Channel {} has a skew of {:.3g} ms, which is not corrected.", c.id, 1e3 * c.skew));

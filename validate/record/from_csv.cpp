@@ -286,7 +286,7 @@ class CsvReader {
     if (!s) {
       faults.add(column.name, fmt::format("{} = '{}'", column.name, cell), sample,
                  "it is not a time stamp, unlike the rows before",
-                 "cut the record before it, or export it again");
+                 "end the record before it, or export it again");
       return kNoValue;
     }
     if (!first_) {
@@ -301,7 +301,7 @@ class CsvReader {
   }
 
   double value(const RawColumn& column, std::string_view cell, std::size_t sample, SampleFaults& faults) {
-    const char* const mend = "fill it at the source, cut the record before it, or export it again";
+    const char* const mend = "fill it at the source, end the record before it, or export it again";
     const Number n = parse_number(cell, top_.separator);
     commas_ = commas_ || (n.ok && n.comma);
     points_ = points_ || (n.ok && n.point);
@@ -332,7 +332,7 @@ class CsvReader {
   /// Treats a word in place of a number as a missing value, and counts it for a note.
   void take_word(const RawColumn& column, std::string_view cell, std::size_t sample, SampleFaults& faults) {
     faults.lose(column.name, fmt::format("{} = '{}'", column.name, cell), sample, "it is not a number",
-                "fill it at the source, cut the record before it, or export it again");
+                "fill it at the source, end the record before it, or export it again");
     if (words_.try_emplace(std::string(cell), 0).first->second++ == 0) word_at_.emplace(cell, lines_[sample]);
   }
 

@@ -190,7 +190,7 @@ class OutReader {
       problems_.add(fmt::format("{} = '{}'", name, run.cell),
                     run.first == run.last ? fmt::format("{}:{}", part_.file, run.first)
                                           : fmt::format("{}:{}-{}", part_.file, run.first, run.last),
-                    more > 0 ? fmt::format("the value is not finite, here and in {} further places", more)
+                    more > 0 ? fmt::format("the value is not finite (also at {} further places)", more)
                              : "the value is not finite",
                     "correct the case, or end before it with --until");
     }

@@ -131,11 +131,14 @@ Record stretch(Record r, double from, double until) {
   const std::size_t kept = last > first ? last - first : 0;
   if (kept < kMinSamples)
     throw InputError({fmt::format("{} samples", kept), r.name,
-                      fmt::format("the selected time range contains fewer than {}", kMinSamples),
+                      fmt::format("the selected time range contains fewer than {} samples", kMinSamples),
                       "give an earlier --from or a later --until"});
   if (const double length = r.t[last - 1] - r.t[first]; length < kShortestRecord)
-    throw InputError({fmt::format("{:.3g} s is too short", length), r.name,
-                      "the response to an event takes seconds", "give an earlier --from or a later --until"});
+    throw InputError(
+        {fmt::format("{:.3g} s is too short", length), r.name,
+         fmt::format("the record is shorter than {:g} s, and the response to an event takes seconds",
+                     kShortestRecord),
+         "give an earlier --from or a later --until"});
   const auto cut = [&](auto& values) {
     if (values.empty()) return;
     values.resize(last);

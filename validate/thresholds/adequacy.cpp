@@ -10,7 +10,8 @@ namespace swingbank::validate::thresholds {
 const CriterionRecord& criterion_record(Criterion criterion) {
   static constexpr std::array<CriterionRecord, 7> records = {{
       {"bins",
-       "bins of the error maps above their noise limit, or with a noise limit above the channel's nominal value",
+       "bins of the error maps that exceed their noise limit, or whose noise limit exceeds the "
+       "channel's nominal value",
        "bins", "at"},
       {"events", "largest reduced chi-square of an event, parameters refitted", "chi2 per value", "up to"},
       {"reduced_chi2", "reduced chi-square of all events, parameters refitted", "chi2 per value", "up to"},

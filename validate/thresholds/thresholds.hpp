@@ -151,9 +151,10 @@ struct Search {
       "their rank in the identification (decision 61)"};
   /// Least share of the better inferred input's gain in chi2 at which blocks of the other input (torque or
   /// field voltage) are identified too [-].
-  Threshold fair{"search.fair", 0.2, "share of the best gain",
-                 "blocks of a side are identified if its inferred input reduces chi2 by at least this "
-                 "share (decision 61)"};
+  Threshold fair{
+      "search.fair", 0.2, "share of the best gain",
+      "blocks of the excitation or mechanical side are identified if the inferred input of that side reduces "
+      "chi2 by at least this share of the best reduction (decision 61)"};
   /// Largest difference in chi2 between two runs of one model with different step sizes [chi2].
   Threshold other_steps{
       "search.other_steps", 4, "chi2",
@@ -199,7 +200,7 @@ struct Addition {
                    "1995); diagnose selects the best of many and needs evidence.accepted"};
   /// Evidence at or below which an earlier addition is removed [chi2].
   Threshold stays{"addition.stays", 0, "chi2",
-                  "an earlier addition is removed if its evidence beside later ones falls to this"};
+                  "an earlier addition is removed if its evidence, given the later additions, falls to this"};
 };
 inline constexpr Addition addition;  ///< the thresholds in use
 
@@ -221,9 +222,9 @@ struct Parameters {
       "parameters.narrowed", 0.8, "ratio of standard errors",
       "a further event is recommended if it reduces a parameter's standard error below this ratio"};
   /// Largest relative difference in cost at which two starts count as having reached the same optimum [-].
-  Threshold agrees{
-      "parameters.agrees", 0.01, "share of the cost",
-      "largest difference from the best start at the same optimum; agrees_least if that is more"};
+  Threshold agrees{"parameters.agrees", 0.01, "share of the cost",
+                   "largest relative difference in cost from the best start at the same optimum; "
+                   "the limit is at least agrees_least"};
   /// Least absolute difference in cost for `agrees` [chi2].
   Threshold agrees_least{"parameters.agrees_least", 1, "chi2", "cost of one standard error of a parameter"};
   /// Change above which the verdict names a calibrated parameter [standard errors].

@@ -333,7 +333,7 @@ TEST(StampTest, AcceptsRepeatedStampWithNewValues) {
   const Record r = parse_record(text, "r.csv", kTestBase);
   EXPECT_EQ(r.samples(), 90);
   EXPECT_TRUE(r.lost.empty());
-  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("one step later"), HasSubstr("r.csv:42"))));
+  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("one sample later"), HasSubstr("r.csv:42"))));
 }
 TEST(StampTest, AcceptsClockSetBack) {
   const auto text = table(kHeader, 300, [](int k) { return row(k, k / 30.0 - (k >= 150 ? 1.0 : 0.0)); });

@@ -91,7 +91,7 @@ TEST(RasterTest, DropsRowsOffTheRaster) {
     EXPECT_EQ(r.samples(), odd == 77 ? 300 : 299);
     EXPECT_NEAR(r.rate(), 60, 1e-3);
     EXPECT_EQ(std::ranges::count(r.lost, 1), odd == 77 ? 1 : 0);
-    EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("1 row is at times between the samples"),
+    EXPECT_THAT(r.notes, Contains(AllOf(HasSubstr("1 row does not fit the uniform sampling"),
                                         HasSubstr(fmt::format("r.csv:{}", odd + 2)))));
   }
 }

@@ -81,10 +81,10 @@ std::optional<Doubt> dispatch_doubt(const record::Record& r, const PlantFacts& p
     doubt.remedy =
         "give P and Q, or the angle of the current's phasor against the same reference as the voltage's";
   } else if (is_ratio(1.0 / 3)) {
-    doubt.why = "a third of the case's is the power of one phase";
+    doubt.why = "the apparent power is a third of the case's, so it is probably the power of one phase";
     doubt.remedy = "give the power of all three phases";
   } else if (is_ratio(std::numbers::sqrt3) || is_ratio(1 / std::numbers::sqrt3)) {
-    doubt.why = "sqrt(3) is the ratio of line-to-line to line-to-neutral voltage";
+    doubt.why = "the factor sqrt(3) suggests that line-to-line and line-to-neutral voltage are confused";
     doubt.remedy = "check base_kv and the voltage from which P and Q were computed";
   } else if (r.per_unit_power && !near(plant.mva, r.base.mva, 0.05) &&
              (is_ratio(plant.mva / r.base.mva) || is_ratio(r.base.mva / plant.mva))) {

@@ -440,9 +440,11 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
   faults.report(problems, file);
   if (rows.place.size() < kMinSamples)
     problems.add(fmt::format("{} samples", rows.place.size()), file,
-                 fmt::format("a record needs at least {}", kMinSamples), "give a longer record");
+                 fmt::format("a record needs at least {} samples", kMinSamples), "give a longer record");
   else if (const double length = rows.t.back() - rows.t.front(); length > 0 && length < kShortestRecord)
-    problems.add(fmt::format("{:.3g} s is too short", length), file, "the response to an event takes seconds",
+    problems.add(fmt::format("{:.3g} s is too short", length), file,
+                 fmt::format("the record is shorter than {:g} s, and the response to an event takes seconds",
+                             kShortestRecord),
                  "export it from 1 s before to 5 s after the event (--from, --until)");
   problems.raise();
   const std::vector<char> unmeasured = fill_channels(raw, rows, r);

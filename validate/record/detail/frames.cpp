@@ -138,7 +138,7 @@ void lose_zero_frames(RawRecord& raw, SampleFaults& faults) {
           for (RawColumn* c : phasors) {
             faults.lose(c->name, fmt::format("{} = 0", c->name), i,
                         "voltage, power and angle are all exactly zero, which is not a measurement",
-                        "fill it at the source, or cut the record before it (--until)");
+                        "fill the gap at the source, or end the record before it (--until)");
             c->values[i] = kNoValue;
           }
     }

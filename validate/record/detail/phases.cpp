@@ -116,7 +116,7 @@ class Combination {
     const RawColumn& one = first_of(columns);
     if (one.meaning.unit) return *one.meaning.unit;
     if (one.meaning.quantity == Quantity::I) {
-      if (!of_voltage_) refuse_unit(one, file_, "the values of a current do not determine it");
+      if (!of_voltage_) refuse_unit(one, file_, "the values of a current do not determine its unit");
       const Unit unit = *of_voltage_ == Unit::pu ? Unit::pu
                         : in_kilo(*of_voltage_)  ? Unit::kiloampere
                                                  : Unit::ampere;

@@ -80,9 +80,11 @@ std::optional<SequenceFault> sequence_fault(const std::array<std::vector<Complex
     std::array<Complex, 3> factor{1.0, 1.0, 1.0};
     factor[p] = -1.0;
     if (const Sequences s = sequences(x, factor); s.positive > 4 * s.negative)
-      return SequenceFault{fmt::format("{} has the opposite sign of {} and {}", names[p], names[(p + 1) % 3],
-                                       names[(p + 2) % 3]),
-                           why, fmt::format("reverse {}: its leads are exchanged", names[p])};
+      return SequenceFault{
+          fmt::format("{} has the opposite sign of {} and {}", names[p], names[(p + 1) % 3],
+                      names[(p + 2) % 3]),
+          why,
+          fmt::format("reverse the sign of {}, because the leads of this phase are exchanged", names[p])};
   }
   return SequenceFault{
       "phase sequence is A-C-B", why,

@@ -134,7 +134,7 @@ class Playback {
       unit = Unit::volt;
     if (!unit)
       problems_.add(fmt::format("voltages about {:.4g}", v), name_,
-                    "they are neither in pu nor near the records' base_kv",
+                    "the voltages are neither near 1 pu nor near base_kv",
                     "set base_kv (line to line) under [record] in the plant file");
     raw.about.notes.push_back(
         fmt::format("The file names no units; the voltage, about {:.4g}, was taken to be in {}.", v,
@@ -152,7 +152,7 @@ class Playback {
     const bool deviation = std::abs(f) < 0.05;
     if (!unit)
       problems_.add(fmt::format("frequencies about {:.4g}", f), name_,
-                    fmt::format("they are neither in pu nor near {:g} Hz", base_.frequency),
+                    fmt::format("the frequencies are neither in pu nor near {:g} Hz", base_.frequency),
                     "check the column and frequency_hz in the plant file");
     raw.about.notes.push_back(fmt::format("The frequency, about {:.4g}, was taken to be {}.", f,
                                           deviation             ? "a deviation in pu"

@@ -188,13 +188,13 @@ class Grid {
                       twice_.size(), faults.where(twice_.front())));
     if (!stuck_.empty())
       about.notes.push_back(fmt::format(
-          "{} rows have the time stamp of the row before but new values, the first at {}; they were taken as one "
-          "step later.",
+          "{} rows have the time stamp of the row before but other values, the first at {}; their times "
+          "were assumed to be one sample later.",
           stuck_.size(), faults.where(stuck_.front())));
     if (!off_.empty())
       about.notes.push_back(fmt::format(
-          "{} {} at times between the samples ({:.6g} s apart), the first at {} (t = {:.6g} s): ignored.",
-          off_.size(), off_.size() == 1 ? "row is" : "rows are", h_, faults.where(off_.front()),
+          "{} {} fit the uniform sampling (step {:.6g} s), the first at {} (t = {:.6g} s): ignored.",
+          off_.size(), off_.size() == 1 ? "row does not" : "rows do not", h_, faults.where(off_.front()),
           t_[off_.front()]));
     if (coarse())
       about.notes.push_back(fmt::format(
@@ -306,7 +306,8 @@ bool report_repeated_times(const Rows& rows, SampleFaults& faults) {
         "standing", what, clock.first,
         rows.resolution > 0 && length > 0
             ? fmt::format(
-                  "the times have too few digits: they are rounded to {:.3g} s, {:.0f} samples share one",
+                  "the times have too few digits: they are rounded to {:.3g} s, so that {:.0f} samples "
+                  "have the same time",
                   rows.resolution, std::ceil(static_cast<double>(t.size()) / apart))
             : "the times have too few digits",
         "export the record from its source again; a spreadsheet rounds times to the displayed digits (mm:ss.0, "

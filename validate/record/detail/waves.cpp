@@ -185,7 +185,7 @@ std::optional<WaveSet> choose_waves(const std::vector<Wave>& waves, bool voltage
   } else {
     problems.add(
         fmt::format("no three-phase {}", kind), where,
-        fmt::format("waveforms need one channel each of phases A, B and C{}; the {}s are {}",
+        fmt::format("it needs one channel for each of the phases A, B and C{}; the {}s are {}",
                     voltage ? ", or two of AB, BC and CA, in V or kV" : ", or two of them, in A or kA", kind,
                     seen(waves, voltage)),
         "export the missing channels, or name circuit and phase of each channel in the .cfg");
