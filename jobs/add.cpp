@@ -80,7 +80,7 @@ compare::CommandPage page_of(const add::Completion& c, const std::vector<compare
                               added_text(c.adequate, page, played.back()));
   for (const auto& one : c.added) say_on(page, one);
   for (const auto& r : c.removed)
-    page.tried.push_back(fmt::format("{} removed again: evidence {:.1f}.", r.effect, r.evidence));
+    page.tried.push_back(fmt::format("{} removed: its evidence fell to {:.1f}.", r.effect, r.evidence));
   return page;
 }
 

@@ -234,7 +234,7 @@ int run(jobs::CommandLine& line, int argc, char** argv) {
            "time limit per case [s]; exceeding it ends the run (default 7200; 0: none)")
       .not_negative();
   line.add("--threads", o.threads,
-           "of one diagnosis; 0: one per core (default: that, or 1 where several ranks share the machine)")
+           "threads of one diagnosis; 0: one per core (default: 0, or 1 if several ranks share the machine)")
       .between(0, 4096);
   line.add("--part", o.part,
            "K/N: only every N-th case, from the K-th; for job arrays. Under mpirun the ranks share those")

@@ -122,8 +122,8 @@ std::string sentence_of(const Addition& a) {
   }
   const std::string where = any_unseen ? "held-out events" : "all events (none held out)";
   std::string text = fmt::format(
-      "{} {}: on {} the reduced chi-square {} from {:.3g} (submitted model) to {:.3g}; refitting without {} gives "
-      "{:.3g}.",
+      "{} {}: on {} the reduced chi-square {} from {:.3g} (submitted model) to {:.3g}; the model refitted "
+      "without {} has {:.3g}.",
       a.hypothesis.what, a.earns ? "added" : "not accepted", where, after < before ? "falls" : "rises",
       before / n, after / n, a.hypothesis.name, without / n);
   text += without_evidence(a);
@@ -175,20 +175,19 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
                       suggestion(name, names, remedy)});
   if (effect->switching_times)
     throw InputError({"effect " + std::string(effect->name), "swingbank add",
-                      "it acts at given times and so belongs to one event, not to the plant",
+                      "the effect acts at given times and therefore describes one event, not the plant",
                       "write it into the model file by hand"});
   if (effect->angle_lag && !recorded.integrated_angle)
-    throw InputError(
-        {"effect " + std::string(effect->name), "swingbank add",
-         "no record has an angle that was integrated from a frequency, and only such an angle lags",
-         "add another effect"});
+    throw InputError({"effect " + std::string(effect->name), "swingbank add",
+                      "the effect delays an angle integrated from frequency, and no record has such an angle",
+                      "add another effect"});
   const auto reader = sim::reader_of(effect->slot);
   if (reader && std::ranges::none_of(model.plant.controls,
                                      [&](const sim::plant::Block& b) { return b.effect->slot == *reader; }))
-    throw InputError(
-        {"effect " + std::string(effect->name), "swingbank add",
-         fmt::format("its output acts through the {}, and the model has none", sim::slot_name(*reader)),
-         fmt::format("add the {} first", sim::slot_name(*reader))});
+    throw InputError({"effect " + std::string(effect->name), "swingbank add",
+                      fmt::format("only the {} reads the effect's output, and the model has none",
+                                  sim::slot_name(*reader)),
+                      fmt::format("add the {} first", sim::slot_name(*reader))});
   throw InputError({"effect " + std::string(effect->name), "swingbank add",
                     "no free place in slot " + std::string(sim::slot_name(effect->slot)),
                     "write \"" + std::string(effect->name) +

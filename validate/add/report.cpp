@@ -144,7 +144,8 @@ std::string terminal_report(const Completion& c) {
   std::string text;
   for (const auto& a : c.added) text += terminal_report(a) + "\n";
   for (const auto& r : c.removed)
-    text += fmt::format("{} removed again: no longer accepted (evidence {:.1f}).\n", r.effect, r.evidence);
+    text += fmt::format("{} removed: its evidence fell to {:.1f} (required: above {:g}).\n", r.effect,
+                        r.evidence, thresholds::addition.stays.value);
   return text + c.sentence + "\n";
 }
 

@@ -86,8 +86,8 @@ sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::
                                             : fmt::format("has the fixed value {:g}", p.low);
       problems.add(
           fmt::format("{} = {:g} {}", p.full(), value, p.unit), model.origin,
-          fmt::format("the network {} {}, further than {:g} x --prior-sd away", estimate.network, learnt,
-                      kBridged),
+          fmt::format("the network {} {}, and the model's value is more than {:g} x --prior-sd away",
+                      estimate.network, learnt, kBridged),
           "train a network about this plant (swingbank add --retrain shows how), or widen --prior-sd");
       continue;
     }

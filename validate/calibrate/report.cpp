@@ -40,8 +40,8 @@ std::string identify_text(const Calibration& c) {
     if (p.fit.decided >= thresholds::parameters.identified) continue;
     text += fmt::format("  {}: ", p.fit.full_name());
     text += p.best_candidate < 0
-                ? std::string("no simulated event reduces its standard error by a fifth\n")
-                : fmt::format("{} reduces its standard error by a factor of {:.1f} ({:.2g} -> {:.2g} {})\n",
+                ? std::string("no simulated event reduces the standard error by a fifth or more\n")
+                : fmt::format("{} reduces the standard error by a factor of {:.1f} ({:.2g} -> {:.2g} {})\n",
                               c.candidates[static_cast<std::size_t>(p.best_candidate)].what, 1 / p.narrowed,
                               p.fit.error, p.fit.error * p.narrowed, p.fit.unit);
   }

@@ -153,8 +153,8 @@ std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant
   Problems problems;
   std::vector<sim::plant::ParameterId> ids;
   for (const auto& f : free) ids.push_back(f.id);
-  const auto held =
-      sim::plant::find_parameters(plant, ids, fixed, "--fix", "the fit has no such free parameter", problems);
+  const auto held = sim::plant::find_parameters(plant, ids, fixed, "--fix",
+                                                "the model has no free parameter of this name", problems);
   std::erase_if(free, [&](const fit::FreeParameter& f) { return std::ranges::count(held, f.id) > 0; });
   if (free.empty() && problems.empty())
     problems.add("no free parameter", plant.name, "all are fixed, zero, or codes", "leave some free");

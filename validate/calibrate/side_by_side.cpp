@@ -201,14 +201,14 @@ report::Table events_beside(const std::vector<Way>& ways) {
 
 std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
   std::string text =
-      "Comparison, reduced chi-square (each event with its own switching times and start; only "
-      "the parameters differ):\n" +
+      "Comparison, reduced chi-square (switching times and initial state fitted for each event; "
+      "the methods differ only in parameters):\n" +
       report::padded(events_beside(ways), 1) + "\n" + report::padded(parameters_beside(ways, truth), 1);
   if (truth.empty()) return text;
   text += "\n";
   for (const auto& way : ways) {
     const Distance d = distance(way, truth);
-    text += fmt::format("{}: {:.3g} % rms from the truth, mean squared error {:.3g} (raw units)", way.name,
+    text += fmt::format("{}: RMS relative error {:.3g} %, mean squared error {:.3g} (raw units)", way.name,
                         100 * d.relative, d.mse);
     if (has_interval(way))
       text += fmt::format(", {} of {} intervals contain the true value", d.covering, d.intervals);
@@ -260,7 +260,7 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
   if (truth.empty()) return text;
   const Distance d = distance(way, truth);
   return text + fmt::format(
-                    "\n{:.3g} % rms from the truth, mean squared error {:.3g} (raw units), {} of {} "
+                    "\nRMS relative error {:.3g} %, mean squared error {:.3g} (raw units), {} of {} "
                     "intervals contain the true value\n",
                     100 * d.relative, d.mse, d.covering, d.intervals);
 }

@@ -68,8 +68,8 @@ std::string wrong_text(const WrongParameters& w) {
   }
   text +=
       "\nEvidence [chi2]: increase of the cost if this parameter keeps its value and the "
-      "others are refitted. Share: this increase relative to the cost above that of the full "
-      "fit; shares need not add up to 100 %.\n";
+      "others are refitted. Share: this increase, relative to the increase if "
+      "all parameters keep their values; shares need not add up to 100 %.\n";
   return text;
 }
 

@@ -187,8 +187,7 @@ class DiagnosisPage {
   /// Adds the share of each channel's samples within the stated tolerance.
   void tolerance() {
     report::Table table{
-        "Share of samples within the stated tolerance, the 99 % band of each channel's noise; noise alone "
-        "gives 99 %.",
+        "Share of samples within the tolerance, the 99 % noise band of each channel (noise alone: 99 %).",
         {"event", "channel", "tolerance", "refitted"},
         {}};
     if (with_after()) table.header.push_back("with " + figures_.after_name);
@@ -292,7 +291,7 @@ class DiagnosisPage {
     report::Table table{
         "Every other parameter keeps its value. Evidence: increase of the cost (chi2) if this "
         "parameter also keeps its value and the others are refitted. Share of error: this "
-        "increase as a share of the cost above that of the full fit.",
+        "increase, relative to the increase if all parameters keep their values.",
         {"parameter", "unit", "submitted", "fitted", "95 % interval", "evidence", "share of error",
          "alternative"},
         {}};

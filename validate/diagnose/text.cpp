@@ -60,7 +60,7 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
                         j.accepted ? "accepted" : j.why_not);
   }
   if (d.ranked.size() > kHypothesesShown)
-    text += fmt::format("and {} more with lower ranks\n", d.ranked.size() - kHypothesesShown);
+    text += fmt::format("and {} more of lower rank\n", d.ranked.size() - kHypothesesShown);
 }
 void add_parameters(const Diagnosis& d, std::string& text) {
   const bool named = !d.ranked.empty() && d.ranked.front().accepted;

@@ -74,8 +74,8 @@ struct Fit {
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
-/// Returns for example "GENROU.Xdpp (limited by X''d > Xl), GENROU.H: at a bound, where the 95 % interval is
-/// not valid."; empty if no parameter is at a bound.
+/// Returns for example "GENROU.Xdpp (limited by X''d > Xl), GENROU.H: at a bound; the 95 % interval is not
+/// valid."; empty if no parameter is at a bound.
 std::string bounds_text(const std::vector<FittedParameter>& parameters);
 
 /// Returns chi2 of data and priors; infinite if the fit failed. fit() minimises this cost once the reduced

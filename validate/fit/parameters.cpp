@@ -17,7 +17,7 @@ std::string bounds_text(const std::vector<FittedParameter>& parameters) {
     if (p.at_bound)
       names += (names.empty() ? "" : ", ") + p.full_name() +
                (p.active_constraint.empty() ? "" : " (limited by " + p.active_constraint + ")");
-  return names.empty() ? "" : names + ": at a bound, where the 95 % interval is not valid.";
+  return names.empty() ? "" : names + ": at a bound; the 95 % interval is not valid.";
 }
 
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double prior_sd) {

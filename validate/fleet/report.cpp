@@ -105,10 +105,10 @@ std::string report_of(const FleetRow& r) { return r.failed() ? "" : r.plant + "/
 
 constexpr const char* kCaption =
     "The worst plant first: by verdict, then by the largest error of P and Q of the submitted model [% of the "
-    "machine's MVA], judged for fitness for purpose. “Refitted” and “held out”: normalised RMS over all channels "
-    "(square root of the reduced chi-square; noise alone gives 1 ×) of the submitted model with fitted "
-    "parameters, and over events excluded from the fit, without and with the effect. Last column: bound of the "
-    "probability that noise alone gives any hypothesis this evidence.";
+    "machine's MVA], judged for fitness for purpose. “Refitted”: normalised RMS over all channels (square root "
+    "of the reduced chi-square; noise alone gives 1 ×) of the submitted model with fitted parameters. “Held "
+    "out”: the same over events excluded from the fit, before and after the effect is added. Last column: bound "
+    "of the probability that noise alone gives any hypothesis this evidence.";
 
 /// Adds the problems of the plants that could not be diagnosed.
 void add_failures(report::Document& page, const std::vector<FleetRow>& rows) {
@@ -265,7 +265,7 @@ std::string fleet_html(const Fleet& fleet, const std::vector<FleetRow>& rows) {
     const Kind& kind = kKinds.at(k);
     table.rows[static_cast<std::size_t>(first - rows.begin())].front().id = kind.id;
     chips.chips.push_back({kind.name, std::to_string(count(rows, k)), kind.tone, kind.id,
-                           "go to the first plant of this kind"});
+                           "go to the first plant with this result"});
   }
   page.add(report::Chips{{chips}});
   page.add(report::Paragraph{"fleet.csv: this table for a spreadsheet", report::Paragraph::Kind::hint, true,

@@ -258,8 +258,8 @@ std::string decide_sentence(const Decision& decision) {
   const NextRecord& best = decision.next.front();
   if (best.expected > decision.now - 0.5)
     return fmt::format(
-        "No simulated measurement separates the candidates: after the best one ({}), {:.1f} of {:.0f} remain on "
-        "average.",
+        "No simulated measurement separates the candidates: after the best one ({}), {:.1f} of {:.0f} candidates "
+        "remain on average.",
         best.what, best.expected, decision.now);
   if (fmt::format("{:.1f}", best.expected) == "1.0")
     return fmt::format("Next measurement: {} would identify the effect ({:.0f} candidates → 1).", best.what,

@@ -164,7 +164,7 @@ int seconds_of(const add::Addition& added) {
                                               : e.switchings.front().time;
     const double left = e.record.t.back() - event - e.record.step();
     if (left < kShortestWindow)
-      problems.add(fmt::format("a record that ends {:.3g} s after its event", left), e.record.name,
+      problems.add(fmt::format("the record ends {:.3g} s after its event", left), e.record.name,
                    fmt::format("networks read {} s or more", kShortestWindow), "give a longer record");
     least = std::min(least, left);
   }

@@ -114,12 +114,14 @@ std::string sentence_of(const Retrained& r, const add::Addition& added) {
       added.hypothesis.name, r.truth ? "true parameters" : "fitted parameters", r.error[0], r.error[1],
       r.fall(), r.middle);
   if (r.error[1] > r.middle)
-    text += " This is no better than the midpoint: train it with more data (--train-draws, --train-epochs).";
-  if (!std::isfinite(r.rms[1])) return text + " With its estimates the plant cannot be simulated.";
-  return text + fmt::format(
-                    " With its estimates the RMS error of P and Q is {}; with those of the other network {}.",
-                    power(r.rms[1]),
-                    std::isfinite(r.rms[0]) ? "it is " + power(r.rms[0]) : "the plant cannot be simulated");
+    text +=
+        " This is no better than the midpoint: train the network with more data (--train-draws, --train-epochs).";
+  text += fmt::format(" With the estimates of the network with {} ", added.hypothesis.name);
+  if (!std::isfinite(r.rms[1])) return text + "the plant cannot be simulated.";
+  return text +
+         fmt::format("the RMS error of P and Q is {}; with those of the network without it {}.",
+                     power(r.rms[1]),
+                     std::isfinite(r.rms[0]) ? "it is " + power(r.rms[0]) : "the plant cannot be simulated");
 }
 
 }  // namespace

@@ -139,7 +139,7 @@ void describe_shape(const Form& f, const Eigen::VectorXd& factors, UserModelCand
       break;
     case Shape::limited:
       user_model.value = "L * clamp(" + y + " / w, -1, 1)";
-      user_model.words = "{L} where {x} exceeds {w}, proportional below, with its sign";
+      user_model.words = "{L} with the sign of {x} beyond ± {w}, proportional within";
       user_model.parameters = {gain_of("L", factor, kMostLevel, "limit"), limit};
       break;
     case Shape::dead_band:

@@ -104,7 +104,7 @@ TEST(FitOrderings, ReportsClampedParameter_WhenTheModelKeepsTheOrder) {
   EXPECT_NEAR(f.parameters.front().value, Xl, 0.02 * Xl);
   EXPECT_TRUE(f.parameters.front().at_bound);
   EXPECT_EQ(bounds_text(f.parameters),
-            "GENROU.Xdpp (limited by X''d > Xl): at a bound, where the 95 % interval is not valid.");
+            "GENROU.Xdpp (limited by X''d > Xl): at a bound; the 95 % interval is not valid.");
 }
 /// A regulator of gain 2000 behind a lead of eleven times responds to the noise of each sample with its
 /// limits. A search in a public case reached these values and was abandoned because of them.

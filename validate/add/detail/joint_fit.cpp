@@ -83,7 +83,7 @@ void JointFit::search() {
     auto all = addable(bases.back().under_test(), left);
     if (all.empty())
       throw InputError({fmt::format("effects {}", fmt::join(left, ", ")), "swingbank add",
-                        "they cannot be added beside the other effects", "add fewer effects"});
+                        "they cannot be added together with the other effects", "add fewer effects"});
     added.push_back(best(bases.back(), std::move(all)));
     std::erase(left, added.back().hypothesis.name);
     bases.push_back(after(bases.back(), added.back()));
@@ -111,7 +111,7 @@ void JointFit::leave_out() {
     without.fit = hypothesis::fit_from(base_model_, without.hypothesis, a_.with, without.hypothesis.plant);
     if (!without.fit.failed.empty())
       throw InputError({"the model without " + names_[i] + " cannot be fitted", "swingbank add",
-                        without.fit.failed, "add the other effects without it"});
+                        without.fit.failed, "add the other effects without " + names_[i]});
     a_.with = from_other(a_.hypothesis, a_.with, without.fit);
     const hypothesis::BaseModel base = after(base_model_, without);
     for (const hypothesis::Judgement& j : judgements(base, addable(base.under_test(), {names_[i]})))

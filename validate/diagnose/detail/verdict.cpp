@@ -207,10 +207,9 @@ void name_best(const user_model_search::Unexplained& judged, Diagnosis& d) {
 
 std::string tempering_note() {
   return fmt::format(
-      "Probabilities are tempered: p ∝ exp(Δ/{:g}), where Δ is the difference of 2 ln(Bayes factor), less the evidence "
-      "required of each effect. The divisor {:g} allows for incomplete fits and an incomplete noise model (decision "
-      "41).",
-      2 * thresholds::posterior.scale, thresholds::posterior.scale.value);
+      "Tempered probability p ∝ exp(Δ/(2 · {0:g})). Δ: 2 ln(Bayes factor) minus the evidence required of each "
+      "effect. The divisor {0:g} allows for incomplete fits and an incomplete noise model (decision 41).",
+      thresholds::posterior.scale.value);
 }
 
 std::string first_sentence(const Diagnosis& d, double adequate) {
@@ -220,8 +219,8 @@ std::string first_sentence(const Diagnosis& d, double adequate) {
         "Preliminary: with refitted parameters the residual is noise (reduced chi-square {:.3f}).",
         d.base.reduced_chi2());
   return fmt::format(
-      "Preliminary: the model is incomplete. Reduced chi-square after the first refit: {:.2f} (noise: 1). Slow "
-      "drift: {:.3g} standard deviations above noise.{}",
+      "Preliminary: the model is incomplete. Reduced chi-square after the first refit: {:.2f} (noise: 1). Power of "
+      "the residual's means over 0.5 to 2 s: {:.3g} standard deviations above white noise.{}",
       d.base.reduced_chi2(), slow, line_sentence(d));
 }
 
@@ -303,8 +302,8 @@ void settle(const user_model_search::Unexplained& judged, const event::Progress&
   const double t = d.torque.reduced_chi2(), f = d.field.reduced_chi2();
   d.side = t < f ? hypothesis::Side::mechanical : hypothesis::Side::excitation;
   d.sentence = fmt::format(
-      "None of the {} known effects explains the records (reduced chi-square {:.2f}, at best "
-      "{:.2f}). An inferred {} gives {:.2f}; the report shows its time series.{}",
+      "None of the {} known effects explains the records (reduced chi-square {:.2f} without, at best "
+      "{:.2f} with an effect). With an inferred {} it is {:.2f}; the report shows this time series.{}",
       r.size(), d.base.reduced_chi2(), r.empty() ? d.base.reduced_chi2() : r.front().fit.reduced_chi2(),
       t < f ? "torque" : "field voltage", std::min(t, f), line_sentence(d));
   d.user_models = user_model_search::search_user_models(judged, progress);
