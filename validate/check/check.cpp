@@ -317,7 +317,7 @@ class Check : Findings {
     if (const double ratio = signals_.angle_per_frequency; ratio > 0) return within(ratio, 0.5, 2);
     const int delay = power_delay(r_, steps_);
     const StepFit radians = fit_steps(r_, steps_, delay);
-    const record::Record other = reinterpreted([](const Reading& x) {
+    const record::Record other = reinterpreted(r_, [](const Reading& x) {
       return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
     });
     // An angle that hardly steps fits in either unit and is not conclusive.
@@ -389,9 +389,9 @@ class Check : Findings {
                        delay > 0 ? "after" : "before"),
            "V and P, Q have different clocks or filter delays", "shift them so that their steps coincide");
     const StepFit as_is = fit_steps(r_, steps_, delay);
-    std::vector<std::pair<const Mistake*, double>> explain;  // with the residual share
+    std::vector<Explanation> explanations;
     for (const auto& m : mistakes()) {
-      const record::Record alternative = reinterpreted(m.reinterpret);
+      const record::Record alternative = reinterpreted(r_, m.reinterpret);
       const std::vector<switching::StepInterval> there = switching::find_large_steps(alternative);
       const StepFit fit = fit_steps(alternative, there, delay), same = fit_steps(r_, there, delay);
       const double noise = noise_share(fit);
@@ -402,38 +402,17 @@ class Check : Findings {
       // The residual of sound records is below m.sound plus noise (tests/validate/check/sound_test.cpp).
       const bool sound =
           same.reactance > 0 && (same.residual < m.sound + 2 * noise || same.residual < 5 * fit.residual);
-      if (!sound) explain.emplace_back(&m, fit.residual);
+      if (!sound) explanations.push_back({&m, fit.residual});
     }
-    // If two mistakes explain the steps almost equally well, the first in the list is more common.
-    const Mistake* best = nullptr;
-    double least = 1;
-    for (const auto& [mistake, residual] : explain)
-      if (residual < least / 2) best = mistake, least = residual;
+    const Explanation* best = likeliest(explanations);
     if (best && apart())
       warn("time_skew", "steps of V and of the current up to one sample apart",
            "one of the channels is delayed",
            "correct its time stamps, or let `swingbank diagnose` fit the skew (SKEW)");
     else if (best)
-      inconsistent(*best, explain, least);
+      add(inconsistent_steps(r_.name, *best, explanations));
     else if (fits(as_is))
       reactance(as_is.reactance * plant_.mva / r_.base.mva);
-  }
-
-  /// Refuses the record because of its steps. `explain`: mistakes that explain them, with the residual share;
-  /// `least`: the share of the best one.
-  void inconsistent(const Mistake& best, const std::vector<std::pair<const Mistake*, double>>& explain,
-                    double least) {
-    const auto finding = [&](const Mistake& m) {
-      return Finding{
-          m.kind,
-          Severity::refuse,
-          {"steps of voltage and current that are inconsistent with a machine", r_.name, m.why, m.remedy}};
-    };
-    Finding refusal = finding(best);
-    refusal.explanations = {finding(best)};
-    for (const auto& [mistake, residual] : explain)
-      if (mistake != &best && residual < 2 * least) refusal.explanations.push_back(finding(*mistake));
-    add(std::move(refusal));
   }
 
   /// Returns whether the steps are consistent if each is extended by one sample interval before it, after it,
@@ -460,19 +439,6 @@ class Check : Findings {
   [[nodiscard]] double noise_share(const StepFit& fit) const {
     return 10 * square(signals_.V.white) / fit.voltage +
            5 * (square(signals_.P.white) + square(signals_.Q.white)) / fit.current;
-  }
-
-  [[nodiscard]] record::Record reinterpreted(const Reinterpret& reinterpret) const {
-    record::Record other;
-    other.t = r_.t;
-    for (std::size_t k = 0; k < r_.t.size(); ++k) {
-      const Reading x = reinterpret({r_.V[k], r_.written_angle()[k], r_.P[k], r_.Q[k]});
-      other.V.push_back(x.V);
-      other.theta.push_back(x.theta);
-      other.P.push_back(x.P);
-      other.Q.push_back(x.Q);
-    }
-    return other;
   }
 
   /// Checks X'' [pu of the machine]: 0.1 to 0.4 pu in machines, up to 0.6 pu with a step-up transformer.

@@ -1,9 +1,11 @@
 #pragma once
 // Common mistakes in the columns V, theta, P and Q, tested at the voltage steps of a record.
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "base/constants.hpp"
+#include "validate/check/check.hpp"
 
 namespace swingbank::validate::check {
 
@@ -51,6 +53,51 @@ inline const std::vector<Mistake>& mistakes() {
        }},
   };
   return list;
+}
+
+/// Returns t, V, theta, P and Q of a record, reinterpreted from the columns as written.
+inline record::Record reinterpreted(const record::Record& r, const Reinterpret& reinterpret) {
+  record::Record other;
+  other.t = r.t;
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    const Reading x = reinterpret({r.V[k], r.written_angle()[k], r.P[k], r.Q[k]});
+    other.V.push_back(x.V);
+    other.theta.push_back(x.theta);
+    other.P.push_back(x.P);
+    other.Q.push_back(x.Q);
+  }
+  return other;
+}
+
+/// Mistake that makes the steps of a record consistent, with the residual share of its correction.
+struct Explanation {
+  const Mistake* mistake;
+  double residual;
+};
+/// Returns the likeliest explanation: the first one, unless another has less than half its residual. Mistakes
+/// earlier in the list are more common. Returns null if there is none.
+inline const Explanation* likeliest(const std::vector<Explanation>& explanations) {
+  const Explanation* best = nullptr;
+  for (const Explanation& e : explanations)
+    if (e.residual < (best ? best->residual : 1) / 2) best = &e;
+  return best;
+}
+/// Returns the refusal of a record with inconsistent steps. Its explanations have a residual below twice that
+/// of the best one.
+inline Finding inconsistent_steps(const std::string& record, const Explanation& best,
+                                  const std::vector<Explanation>& explanations) {
+  const auto finding = [&](const Mistake& m) {
+    return Finding{
+        m.kind,
+        Severity::refuse,
+        {"steps of voltage and current that are inconsistent with a machine", record, m.why, m.remedy}};
+  };
+  Finding refusal = finding(*best.mistake);
+  refusal.explanations = {finding(*best.mistake)};
+  for (const Explanation& e : explanations)
+    if (e.mistake != best.mistake && e.residual < 2 * best.residual)
+      refusal.explanations.push_back(finding(*e.mistake));
+  return refusal;
 }
 
 }  // namespace swingbank::validate::check
