@@ -134,7 +134,8 @@ TEST(LiveFits, StoppedFitIsAStepWithoutIntervals) {
             last = m;
             if (++messages == 3) ask_to_stop();
           });
-  swingbank::detail::interruptible = swingbank::detail::stop_asked = 0;
+  swingbank::detail::interruptible = 0;
+  swingbank::detail::stop_asked = 0;
   ASSERT_EQ(last.at("type"), "step") << last.dump();
   Session session(example(), submitted());
   const int stopped = session.append(step_of_fit(*example(), *submitted(), 0, last));
