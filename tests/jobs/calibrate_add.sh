@@ -125,7 +125,7 @@ misused "no records" "records" calibrate
 misused "method" "method" calibrate --records "$one" --method guess
 misused "prior" "prior-sd" calibrate --records "$one" --prior-sd -1
 refuses "unknown effect" "SEXS" add NONESUCH --records "$one"
-refuses "an effect of one event" "belongs to one event" add VREFSTEP --records "$one"
+refuses "an effect of one event" "describes one event" add VREFSTEP --records "$one"
 refuses "slot taken" "no free place" add GENCLS --records "$one"
 refuses "no effect named" "until-adequate" add --records "$one"
 refuses "named and looked for" "until-adequate" add SEXS --until-adequate --records "$one"

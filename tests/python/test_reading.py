@@ -47,7 +47,7 @@ class Columns(unittest.TestCase):
         self.assertEqual(sorted(record.units), ["P", "Q", "V", "theta"])
         for channel in record.units:
             np.testing.assert_array_equal(record[channel], whole[channel][:len(record)], channel)
-        with self.assertRaisesRegex(swingbank.InputError, "change the sign"):  # the check of the record sees it
+        with self.assertRaisesRegex(swingbank.InputError, "reverse the signs"):  # the check of the record sees it
             swingbank.Record(self.file, self.plant, columns={**columns, "P": "-power [pu]", "Q": "-reactive [pu]"})
         with self.assertRaises(swingbank.InputError):
             swingbank.Record(self.file, self.plant)  # no name is recognised

@@ -257,11 +257,11 @@ TEST(Add, FindsExactNamesAndListsSimilarOnes) {
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "IEEET1", {}); }),
               ElementsAre(AllOf(HasSubstr("no free place"), HasSubstr("exciter"))));
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "VREFSTEP", {}); }),
-              ElementsAre(HasSubstr("belongs to one event")));
+              ElementsAre(HasSubstr("describes one event")));
   EXPECT_THAT(test::messages([&] { find_hypothesis(example(false), "IEEEST", {}); }),
               ElementsAre(HasSubstr("add the exciter first")));
   EXPECT_THAT(test::messages([&] { find_hypothesis(model, "FREQLAG", records(model)); }),
-              ElementsAre(HasSubstr("no record has an angle that was integrated")));
+              ElementsAre(HasSubstr("no record has such an angle")));
 }
 
 TEST(Add, ListsEveryNameThatCannotBeAdded) {

@@ -140,7 +140,7 @@ TEST(CompareComponentTest, ReportsAndRestoresOmittedBlocks) {
   for (const auto* name : {"TGOV1", "SEXS"}) sim::plant::insert_block(model.plant, test::default_block(name));
   const plant::PlantModel part = event::component_model(model, Component::governor);
   ASSERT_EQ(part.warnings.size(), 1u);
-  EXPECT_THAT(part.warnings.front(), HasSubstr("governor alone: GENROU, SEXS"));
+  EXPECT_THAT(part.warnings.front(), HasSubstr("governor is tested alone: GENROU, SEXS"));
   EXPECT_EQ(part.plant.controls.size(), 1u);
   const plant::PlantModel whole = event::whole_model(part);
   EXPECT_EQ(whole.plant.machine.effect->name, "GENROU");
