@@ -189,19 +189,19 @@ std::string given_file(const std::vector<std::string>& given, const std::string&
 /// Adds a problem if the input of the test, generated from t = 0 at `rate` [1/s], has too few samples before
 /// or during the event.
 void check_generated_times(const Test& t, double rate, Problems& problems) {
-  constexpr double kFewestBefore = 5, kFewestDuring = 2;
-  if (const double before = kFewestBefore / rate; !(t.event >= before))
+  constexpr double kMinSamplesBefore = 5, kMinSamplesDuring = 2;
+  if (const double before = kMinSamplesBefore / rate; !(t.event >= before))
     problems.add(
         fmt::format("event = {:g} s of test '{}'", t.event, t.name), t.where,
         fmt::format("its input is generated from 0 s on, and the operating point is the mean of at least "
                     "{:g} samples before the event",
-                    kFewestBefore),
+                    kMinSamplesBefore),
         fmt::format("let the event begin at {:.3g} s or later", before));
-  if (t.end && !(*t.end - t.event >= kFewestDuring / rate))
-    problems.add(
-        fmt::format("event of {:g} s in test '{}'", *t.end - t.event, t.name), t.where,
-        fmt::format("at {:g} samples per second it contains fewer than {:g} samples", rate, kFewestDuring),
-        "raise rate in [operating_point], or end the event later");
+  if (t.end && !(*t.end - t.event >= kMinSamplesDuring / rate))
+    problems.add(fmt::format("event of {:g} s in test '{}'", *t.end - t.event, t.name), t.where,
+                 fmt::format("at {:g} samples per second it contains fewer than {:g} samples", rate,
+                             kMinSamplesDuring),
+                 "raise rate in [operating_point], or end the event later");
 }
 
 /// Returns whether the plant control regulates Q (RefFlag = 0); empty if the plant has no plant control.
