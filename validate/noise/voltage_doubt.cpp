@@ -6,6 +6,7 @@
 #include "base/constants.hpp"
 #include "base/white_noise.hpp"
 #include "sim/core/noise.hpp"
+#include "validate/noise/beside.hpp"
 #include "validate/noise/slow_noise.hpp"
 
 namespace swingbank::validate::noise {
@@ -16,9 +17,17 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of(covariance);
   return of.eigenvectors().rightCols(3) * of.eigenvalues().tail(3).cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
-/// Returns the variance per sample of the random walk of an angle that was integrated from f [rad^2].
-double astray(const record::Record& r, std::size_t n) {
-  return white_variance(std::span(r.f).first(n)) * std::pow(constants::turn * r.base.frequency * r.step(), 2);
+/// Returns the variance per sample of the random walk of an angle that was integrated from f [rad^2]. A meter
+/// with a symmetric window shows the phase jump of a switching before it too. Samples beside the first
+/// switching are therefore not used, unless fewer than three, the least for an estimate, remain.
+double astray(const event::FitEvent& e) {
+  const record::Record& r = e.record;
+  const auto all = static_cast<std::size_t>(e.start.samples);
+  std::size_t n = all;
+  if (!e.switchings.empty())
+    while (n > 0 && r.t[n - 1] > e.switchings.front().time - kBeside) --n;
+  const auto f = std::span(r.f).first(n < 3 ? all : n);
+  return white_variance(f) * std::pow(constants::turn * r.base.frequency * r.step(), 2);
 }
 
 /// Returns the plant's response to impulses on its states: [channel][sample].
@@ -45,7 +54,7 @@ VoltageDoubt voltage_doubt(const sim::plant::PlantUnderTest& tested, WhitenedEve
   const Eigen::Vector3d variance(
       white_variance(std::span(e.record.V).first(quiet)) / std::norm(e.start.voltage),
       integrated ? 0.0 : white_variance(std::span(e.record.theta).first(quiet)),
-      integrated ? astray(e.record, quiet) : 0.0);
+      integrated ? astray(e) : 0.0);
   const playin::VoltageCurve curve(e.record, {});
   const SlowNoise noise = slow_noise(playin::linearise({.plant = &tested.plant,
                                                         .conventions = tested.conventions,
