@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/json.hpp"
+#include "base/shell_word.hpp"
 #include "base/stop_signal.hpp"
 #include "jobs/command_line.hpp"
 #include "jobs/progress_plan.hpp"
@@ -209,10 +210,11 @@ inline validate::event::Progress progress_line(const ProgressPlan& plan = {}) {
   };
 }
 
-/// Returns the command line "swingbank <command> <arguments>", for the provenance of results.
+/// Returns the command line "swingbank <command> <arguments>", quoted for a shell, for the provenance of
+/// results.
 inline std::string command_line(const std::string& command, int argc, char** argv) {
   std::string line = "swingbank " + command;
-  for (int i = 1; i < argc; ++i) line += std::string(" ") + argv[i];
+  for (int i = 1; i < argc; ++i) line += " " + shell_word(argv[i]);
   return line;
 }
 

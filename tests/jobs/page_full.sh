@@ -15,8 +15,11 @@ done
 ! grep -qF '</script><b>' "$work/out/report.html" || fail "a name breaks the page"
 python3 - "$work/out/compare.json" "$hash" "$(sha256sum <"$one" | cut -d' ' -f1)" <<'PYTHON'
 import json, sys
-hashes = [row["value"].split()[0] for row in json.load(open(sys.argv[1]))["provenance"] if row["what"] == "SHA-256"]
+rows = json.load(open(sys.argv[1]))["provenance"]
+hashes = [row["value"].split()[0] for row in rows if row["what"] == "SHA-256"]
 assert sorted(hashes) == sorted(sys.argv[2:]), hashes
+command = next(row["value"] for row in rows if row["what"] == "command")
+assert " --by 'A. Engineer' " in command, command  # as a shell reads it
 PYTHON
 calibrate --out "$work/out" >/dev/null 2>&1
 for words in 'Glossary' '95 % interval' 'calibrated' 'submitted' 'Error map' 'SHA-256'; do
