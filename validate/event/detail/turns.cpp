@@ -117,17 +117,15 @@ double best_turn(const sim::plant::PlantUnderTest& tested, FitEvent& event, std:
 void drop_peaks(FitEvent& event) {
   record::Record& r = event.record;
   if (!event.turns() || !event.filtered_samples.empty()) return;
+  const double least = std::max(kPeakThreshold * std::sqrt(white_variance(std::span(r.f).first(
+                                                     static_cast<std::size_t>(event.start.samples)))),
+                                kLeastPeak / r.base.frequency),
+               reach = switching::kPeakReach * r.step();
   const auto& at = event.switchings;
-  const double reach = switching::kPeakReach * r.step();
-  const auto begins = [&](std::size_t k) { return behind(r, at[k].time - reach); };
-  const auto ends = [&](std::size_t k) { return behind(r, at[k].time + reach); };
-  if (at.empty()) return;
-  // A meter with a symmetric window shows a peak before the switching too, which is not noise.
-  const std::size_t steady = std::min(begins(0), static_cast<std::size_t>(event.start.samples));
-  const double least = std::max(kPeakThreshold * std::sqrt(white_variance(std::span(r.f).first(steady))),
-                                kLeastPeak / r.base.frequency);
   bool dropped = false;
   const std::vector<double> with_peaks = record::angle_of_frequency(r);
+  const auto begins = [&](std::size_t k) { return behind(r, at[k].time - reach); };
+  const auto ends = [&](std::size_t k) { return behind(r, at[k].time + reach); };
   for (std::size_t first = 0, last; first < at.size(); first = last + 1) {
     for (last = first; last + 1 < at.size() && begins(last + 1) < ends(last) + kMinExtrapolationSamples;)
       ++last;
