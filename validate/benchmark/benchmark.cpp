@@ -142,12 +142,19 @@ auto response_of(const plant::PlantModel& model, const Simulate& simulate) {
   }
 }
 
+/// Sets the record of a comparison, its windows and the samples outside them.
+void take_record(const Test& t, Record r, compare::EventComparison& e) {
+  e.record = std::move(r);
+  e.windows = windows_of(t, e.record);
+  e.left_out = outside_windows(e.record, e.windows);
+}
+
 /// Simulates both models behind the grid of the test. The response of the reference becomes the record.
 void simulate_behind_grid(const Test& t, const BenchmarkInputs& in, compare::EventComparison& e) {
   const auto simulate = [&](const plant::PlantModel& model) {
     return record_of_test(t, in.model, grid_response(t, *in.initial, in.model, model));
   };
-  e.record = response_of(*in.against, simulate);
+  take_record(t, response_of(*in.against, simulate), e);
   Record response = response_of(in.model, simulate);
   e.playback.P = std::move(response.P);
   e.playback.Q = std::move(response.Q);
@@ -161,7 +168,7 @@ void simulate_behind_grid(const Test& t, const BenchmarkInputs& in, compare::Eve
 /// latter.
 playin::Playback play_record(const Test& t, const BenchmarkInputs& in, const Record& given,
                              compare::EventComparison& e) {
-  e.record = record_of_test(t, in.model, given);
+  take_record(t, record_of_test(t, in.model, given), e);
   const plant::PlantModel& reference = in.against ? *in.against : in.model;
   const event::FitEvent prepared =
       event::prepare_events(reference, {e.record}, {.step_shape = switching::StepShape::sharp}).front();
@@ -197,8 +204,6 @@ TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& give
     return result;
   }
   const double per_machine = mva / e.record.base.mva;
-  e.windows = windows_of(t, e.record);
-  e.left_out = outside_windows(e.record, e.windows);
   const auto outputs = in.against ? std::vector{playin::Output::P, playin::Output::Q}
                                   : playin::compared_outputs(e.record, true);
   for (const playin::Output o : outputs)

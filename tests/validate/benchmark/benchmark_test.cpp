@@ -170,6 +170,7 @@ TEST_F(BenchmarkTest, TestThatTheModelCannotFollowFails) {
   const auto results = run(model_, nullptr);
   EXPECT_FALSE(passes(results));
   EXPECT_FALSE(results.front().failure.empty());
+  EXPECT_EQ(results.front().event.windows.size(), 3U);  // known without a response
   const ReportContext context{.model = model_, .reference = "EMT", .set = set_, .by = by_, .provenance = {}};
   EXPECT_THAT(csv_report(results), HasSubstr("dip,voltage_dip,,,,,,,,,,,,,fail"));
   EXPECT_THAT(html_report(results, context), HasSubstr("The simulation of this test failed"));

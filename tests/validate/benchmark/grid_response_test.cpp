@@ -115,10 +115,9 @@ TEST(GridResponse, BenchmarkComparesVoltageAndPowers) {
     EXPECT_EQ(r.event.channels.back().name, "V");
     EXPECT_GT(r.rows.back().errors.mxe, 0.1) << r.test.name;  // V after the event [% of 1 pu]
   }
-  // Parameters of the same machine on another MVA base describe the same plant in the same grid.
+  // A reference with another MVA starts at the same MW and Mvar.
   plant::PlantModel rated = reference;
-  const double factor = 2;
-  rated.plant.mva *= factor;
+  rated.plant.mva *= 2;
   const record::Record a = grid_response(set.tests.front(), *set.initial, reference, reference),
                        b = grid_response(set.tests.front(), *set.initial, reference, rated);
   EXPECT_NEAR(a.P.front(), b.P.front(), 1e-9);
