@@ -1,15 +1,13 @@
 #include "sim/direct/likelihood.hpp"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "sim/core/noise.hpp"
 #include "sim/direct/detail/innovations.hpp"
-#include "sim/direct/detail/search.hpp"
 #include "sim/direct/integral.hpp"
 
 namespace swingbank::sim::direct {
@@ -17,21 +15,18 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Cost function of the posterior. Unknowns: free parameters in units of their prior's standard deviation,
-/// then the operating point.
-class Posterior : public DualCostFunction<Posterior> {
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Posterior of the unknowns: free parameters in units of their prior's standard deviation, then the
+/// operating point.
+class Posterior {
  public:
   Posterior(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
             std::span<const ParameterPrior> free)
-      : DualCostFunction(static_cast<int>(innovation_count(record) + free.size()),
-                         static_cast<int>(free.size()) + kSteady),
-        machine_(machine),
-        record_(record),
-        p_(p),
-        free_(free) {}
-  [[nodiscard]] Index unknowns() const { return static_cast<Index>(free_.size()) + kSteady; }
+      : machine_(machine), record_(record), p_(p), free_(free) {
+    for (const auto& f : free) scaled_.push_back({f.index, f.deviation});
+  }
   [[nodiscard]] VectorXd start() const {
     VectorXd z(unknowns());
     for (std::size_t k = 0; k < free_.size(); ++k) {
@@ -42,89 +37,144 @@ class Posterior : public DualCostFunction<Posterior> {
     z.tail<kSteady>() << record_.P0, record_.Q0, record_.V0, 0;
     return z;
   }
+  [[nodiscard]] Index unknowns() const { return static_cast<Index>(free_.size()) + kSteady; }
+  [[nodiscard]] double degrees_of_freedom() const {
+    return static_cast<double>(residual_count(record_) - kSteady);  // one residual of the prior per parameter
+  }
   [[nodiscard]] std::vector<double> parameters(const VectorXd& z) const {
     std::vector<double> p = p_;
     for (std::size_t k = 0; k < free_.size(); ++k)
       p[static_cast<std::size_t>(free_[k].index)] = z[static_cast<Index>(k)] * free_[k].deviation;
     return p;
   }
-  /// Recomputes filter gains and sensitivities at z.
-  void linearise(const VectorXd& z) {
-    const auto n = static_cast<Index>(free_.size());
-    now_ = filter(machine_, record_, parameters(z), {z[n], z[n + 1], z[n + 2], z[n + 3]});
-  }
-  /// Returns the innovations, then the prior's residuals, with sensitivities to kSensitivities unknowns from
-  /// `first` on.
-  template <class T>
-  [[nodiscard]] std::vector<T> of(const double* z, Index first) const {
-    const auto at = [&](Index k, double scale) { return unknown<T>(z, k, scale, first); };
-    std::vector<T> p(p_.begin(), p_.end()), out(static_cast<std::size_t>(num_residuals()));
-    const std::size_t own = innovation_count(record_);
+  /// Limits of the unknowns.
+  [[nodiscard]] std::pair<VectorXd, VectorXd> limits() const {
+    VectorXd low = VectorXd::Constant(unknowns(), -kInfinity), high = -low;
     for (std::size_t k = 0; k < free_.size(); ++k) {
-      const auto& f = free_[k];
-      const T value = at(static_cast<Index>(k), f.deviation);
-      p[static_cast<std::size_t>(f.index)] = value;
-      out[own + k] = (value - T(f.mean)) * T(1 / f.deviation);
+      low[static_cast<Index>(k)] = free_[k].low / free_[k].deviation;
+      high[static_cast<Index>(k)] = free_[k].high / free_[k].deviation;
     }
-    const auto n = static_cast<Index>(free_.size());
-    innovations<T>(machine_, now_.likely, now_.gains, p, {at(n, 1), at(n + 1, 1), at(n + 2, 1), at(n + 3, 1)},
-                   out.data());
-    // The record without noise has zero innovations at z; the filter's innovations are added.
-    const auto outputs = static_cast<std::size_t>(record_.outputs);
-    std::size_t i = own - record_.samples() * outputs;
-    for (const auto& white : now_.white)
-      for (std::size_t o = 0; o < outputs; ++o, ++i) out[i] = out[i] + T(white[static_cast<Index>(o)]);
-    return out;
+    return {low, high};
+  }
+  [[nodiscard]] Filtered filtered(const VectorXd& z) const {
+    return filter(machine_, record_, parameters(z), steady(z));
+  }
+  [[nodiscard]] LinearisedResiduals linearised(const VectorXd& z, const Filtered& filtered) const {
+    return linearise(machine_, record_, filtered, parameters(z), steady(z), scaled_);
+  }
+  [[nodiscard]] VectorXd residuals(const VectorXd& z, const Filtered& filtered,
+                                   const LinearisedResiduals& l) const {
+    return direct::residuals(machine_, record_, filtered, l.response, parameters(z), steady(z));
+  }
+  /// Returns the prior's residuals; zero for the operating point.
+  [[nodiscard]] VectorXd prior(const VectorXd& z) const {
+    VectorXd r = VectorXd::Zero(unknowns());
+    for (std::size_t k = 0; k < free_.size(); ++k) {
+      const auto i = static_cast<Index>(k);
+      r[i] = z[i] - free_[k].mean / free_[k].deviation;
+    }
+    return r;
+  }
+  /// Returns J^T J of all residuals.
+  [[nodiscard]] Eigen::MatrixXd information(const LinearisedResiduals& l) const {
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns(), unknowns());
+    matrix.selfadjointView<Eigen::Lower>().rankUpdate(l.jacobian.transpose());
+    matrix.diagonal().head(static_cast<Index>(free_.size())).array() += 1;
+    return matrix.selfadjointView<Eigen::Lower>();
   }
 
  private:
+  [[nodiscard]] std::array<double, kSteady> steady(const VectorXd& z) const {
+    const auto n = static_cast<Index>(free_.size());
+    return {z[n], z[n + 1], z[n + 2], z[n + 3]};
+  }
+
   const Effect& machine_;
   const NoisyRecord& record_;
   std::vector<double> p_;
   std::span<const ParameterPrior> free_;
-  Filtered now_;
+  std::vector<ScaledParameter> scaled_;
 };
 
-/// Performs the search within one linearisation. Returns the cost before it.
-double improve(Posterior& posterior, VectorXd& z, std::span<const ParameterPrior> free,
-               const LikelihoodOptions& options, MostProbable& found) {
-  constexpr double kLikelihoodSettled = 1e-6;  // relative change of the cost, a sum of thousands of squares
-  ceres::Problem::Options borrowed;
-  borrowed.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(borrowed);
-  problem.AddResidualBlock(&posterior, nullptr, z.data());
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    problem.SetParameterLowerBound(z.data(), static_cast<int>(k), free[k].low / free[k].deviation);
-    problem.SetParameterUpperBound(z.data(), static_cast<int>(k), free[k].high / free[k].deviation);
+/// Returns the minimum of gradient^T s + s^T matrix s/2 with z + s between low and high. Unknowns that would
+/// leave the limits end at them, and the others are solved for again.
+VectorXd bounded_step(const Eigen::MatrixXd& matrix, const VectorXd& gradient, const VectorXd& z,
+                      const VectorXd& low, const VectorXd& high) {
+  VectorXd step = VectorXd::Zero(z.size());
+  std::vector<Index> open(static_cast<std::size_t>(z.size()));
+  std::iota(open.begin(), open.end(), Index{0});
+  while (!open.empty()) {
+    const VectorXd right = -(gradient + matrix * step);
+    const VectorXd moved = matrix(open, open).ldlt().solve(right(open));
+    std::vector<Index> inside;
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      const Index i = open[k];
+      const double to = z[i] + moved[static_cast<Index>(k)];
+      if (to < low[i] || to > high[i])
+        step[i] = (to < low[i] ? low[i] : high[i]) - z[i];
+      else
+        inside.push_back(i);
+    }
+    if (inside.size() == open.size()) {
+      for (std::size_t k = 0; k < open.size(); ++k) step[open[k]] = moved[static_cast<Index>(k)];
+      break;
+    }
+    open = std::move(inside);
   }
-  ceres::Solver::Summary summary;
-  ceres::Solve(search_options(options.iterations, kLikelihoodSettled), &problem, &summary);
-  if (!summary.IsSolutionUsable()) return std::numeric_limits<double>::infinity();
-  found.iterations += static_cast<int>(summary.iterations.size()) - 1;
-  return 2 * summary.initial_cost;
+  return step;
 }
 
+/// Returns the second derivative of the residuals along the step, by a difference over a tenth of it.
+VectorXd second_derivative(const Posterior& posterior, const VectorXd& z, const VectorXd& step,
+                           const Filtered& filtered, const LinearisedResiduals& l) {
+  constexpr double kDifferenceShare = 0.1;
+  const VectorXd near = posterior.residuals(z + kDifferenceShare * step, filtered, l);
+  return 2 / (kDifferenceShare * kDifferenceShare) *
+         (near - l.value - kDifferenceShare * (l.jacobian * step));
+}
+
+/// Search within the limits: Levenberg-Marquardt steps with geodesic acceleration (Transtrum and Sethna,
+/// arXiv:1201.5885) on the sum of squares whose gains and voltage are those of the step's start. Where no
+/// step is left, the parameters solve the likelihood's equations J^T r = 0.
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
                     std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
-  constexpr double kSameCost = 0.02;  // change of the cost between two linearisations
-  // A search stops if its reduced chi-square exceeds kLost and its cost decreases by less than the fraction
-  // kCreeps. It is then trapped in a corner of the parameter bounds.
-  constexpr double kLost = 1.15, kCreeps = 0.005;
-  Posterior posterior(machine, record, start, free);
+  // Predicted decrease of the sum of squares below which the search ends. The sum is twice a log-likelihood,
+  // so that such a decrease says nothing about the parameters.
+  constexpr double kSettledDecrease = 1e-3;
+  constexpr double kMostCurved = 0.375;  // longest acceleration, relative to the step (same source)
+  constexpr double kLeastDamping = 1e-6, kMostDamping = 1e9;
+  const Posterior posterior(machine, record, start, free);
+  const auto [low, high] = posterior.limits();
   VectorXd z = posterior.start();
-  MostProbable found{posterior.parameters(z), 0, std::numeric_limits<double>::infinity(), 0};
-  const auto freedom = static_cast<double>(posterior.num_residuals() - posterior.unknowns());
-  for (int round = 0; round < options.rounds; ++round) {
-    posterior.linearise(z);
-    const VectorXd here = z;
-    const double cost = improve(posterior, z, free, options, found), before = found.cost;
-    if (cost < before) {
-      found.p = posterior.parameters(here);
-      found.cost = cost;
-      found.chi_square = cost / freedom;
+  MostProbable found{posterior.parameters(z), 0, kInfinity, 0};
+  double damping = 1e-3;
+  for (; found.iterations < options.iterations; ++found.iterations) {
+    const Filtered filtered = posterior.filtered(z);
+    const LinearisedResiduals l = posterior.linearised(z, filtered);
+    const Eigen::MatrixXd information = posterior.information(l);
+    const VectorXd gradient = l.jacobian.transpose() * l.value + posterior.prior(z);
+    const double here = l.value.squaredNorm() + posterior.prior(z).squaredNorm();
+    found.p = posterior.parameters(z);
+    found.cost = here + filtered.log_determinant;
+    found.chi_square = here / posterior.degrees_of_freedom();
+    if (!std::isfinite(found.cost)) break;
+    bool moved = false;
+    while (!moved && damping < kMostDamping) {
+      Eigen::MatrixXd damped = information;
+      damped.diagonal() *= 1 + damping;
+      VectorXd step = bounded_step(damped, gradient, z, low, high);
+      if (!(-(2 * gradient.dot(step) + step.dot(information * step)) > kSettledDecrease)) break;
+      const VectorXd half_curvature = second_derivative(posterior, z, step, filtered, l) / 2;
+      const VectorXd curved =
+          bounded_step(damped, gradient + l.jacobian.transpose() * half_curvature, z, low, high);
+      if (curved.allFinite() && (curved - step).norm() < kMostCurved * step.norm()) step = curved;
+      const double there =
+          posterior.residuals(z + step, filtered, l).squaredNorm() + posterior.prior(z + step).squaredNorm();
+      moved = there < here;
+      damping = moved ? std::max(damping / 10, kLeastDamping) : damping * 10;
+      if (moved) z += step;
     }
-    const bool lost = found.chi_square > kLost && before - cost < kCreeps * cost;
-    if (!std::isfinite(cost) || before - cost < kSameCost || lost) break;
+    if (!moved) break;
   }
   return found;
 }
@@ -144,7 +194,9 @@ ParameterPrior uniform_prior(int index, double low, double high) {
 }
 
 bool has_likelihood(const Effect& machine) {
-  return machine.states.size() <= kMostFlowing && !machine.get<double>().machine.current;
+  return machine.states.size() <= kMostFlowing &&
+         machine.parameters.size() + kSteady <= static_cast<std::size_t>(kMostUnknowns) &&
+         !machine.get<double>().machine.current;
 }
 
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
@@ -191,19 +243,13 @@ std::vector<double> error_bound(const Effect& machine, const Recording& record,
     for (const auto& f : free) variances.push_back(f.deviation * f.deviation);
     return variances;
   }
-  Posterior posterior(machine, noisy, truth, free);
+  const Posterior posterior(machine, noisy, truth, free);
   const VectorXd z = posterior.start();
-  posterior.linearise(z);
-  VectorXd values(posterior.num_residuals());
-  RowMatrix jacobian(posterior.num_residuals(), posterior.unknowns());
-  const double* blocks[] = {z.data()};
-  double* jacobians[] = {jacobian.data()};
-  if (!posterior.Evaluate(blocks, values.data(), jacobians)) return {};
-  const VectorXd size = jacobian.colwise().norm();
-  jacobian.array().rowwise() /= size.transpose().array();
-  const Eigen::MatrixXd information = jacobian.transpose() * jacobian;
+  const Eigen::MatrixXd information = posterior.information(posterior.linearised(z, posterior.filtered(z)));
+  const VectorXd size = information.diagonal().cwiseSqrt();
+  const Eigen::MatrixXd scaled = information.array() / (size * size.transpose()).array();
   const VectorXd variance =
-      information.ldlt().solve(Eigen::MatrixXd::Identity(size.size(), size.size())).diagonal();
+      scaled.ldlt().solve(Eigen::MatrixXd::Identity(size.size(), size.size())).diagonal();
   std::vector<double> bound;
   for (std::size_t k = 0; k < free.size(); ++k) {
     const auto i = static_cast<Index>(k);

@@ -23,13 +23,12 @@ ParameterPrior uniform_prior(int index, double low, double high);
 struct MostProbable {
   std::vector<double> p;  ///< all parameters of the effect
   double chi_square = 0;  ///< reduced chi-square of the innovations; about 1 for a correct model
-  double cost = 0;        ///< sum of squares of whitened innovations and prior
-  int iterations = 0;     ///< number of iterations over all linearisations
+  double cost = 0;        ///< -2 times the logarithm of the posterior, up to a constant
+  int iterations = 0;     ///< number of steps
 };
 /// Effort of the maximum a posteriori estimate.
 struct LikelihoodOptions {
-  int rounds = 20;        ///< number of linearisations
-  int iterations = 8;     ///< number of iterations for each linearisation
+  int iterations = 60;    ///< largest number of steps
   double longest = 13.0;  ///< length of the segment after the event [s]
 };
 

@@ -1,44 +1,69 @@
 #pragma once
 // Innovations of a Kalman filter on a noisy record. The noise of the played-in voltage acts immediately
 // through the stator equations, and later through the rotor states. The innovations contain both effects and
-// are white at the true parameters. Minus half the sum of their squares is therefore the log-likelihood, up
-// to a constant.
+// are white at the true parameters. Minus half of the sum of their squares and of the logarithm of their
+// covariance's determinant is therefore the log-likelihood, up to a constant.
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
-#include "sim/core/scalar.hpp"
-#include "sim/direct/detail/noisy_record.hpp"
-#include "sim/direct/detail/playback_machine.hpp"
+#include "sim/direct/detail/played.hpp"
 
 namespace swingbank::sim::direct {
 
-/// Operating point before the event. It is estimated, because means of noisy samples are inexact.
-enum Steady { kP0, kQ0, kV0, kTheta0, kSteady };
+using OutputVector = Eigen::Matrix<double, kOutputs, 1>;
 
 /// Filter gain of one sample.
 struct Gain {
-  using State = Eigen::Matrix<double, kMostFlowing, 1>;
   Eigen::Matrix<double, kMostFlowing, kOutputs> onto_states;  ///< gain onto the next sample's states
   Eigen::Matrix<double, kOutputs, kOutputs> whitening;        ///< inverse Cholesky factor of cov(innovation)
 };
 /// Result of the filter for given parameters and operating point.
 struct Filtered {
   std::vector<Gain> gains;
-  std::vector<Eigen::Matrix<double, kOutputs, 1>> white;  ///< whitened innovations
-  /// The record without its most probable noise, and the machine's response to it. Sensitivities are computed
-  /// with this record. With the noisy voltage they would be correlated with the innovations, and the fit
-  /// would be biased.
+  std::vector<OutputVector> white;  ///< whitened innovations
+  double log_determinant = 0;       ///< of the covariance of all innovations
+  /// The record without its most probable noise. Sensitivities are computed with its voltage. With the noisy
+  /// voltage they would be correlated with the innovations, and the fit would be biased.
   NoisyRecord likely;
 };
 Filtered filter(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
                 const std::array<double, kSteady>& steady);
 
-/// Returns the number of outputs of innovations(): one for each mean before the event, then one for each
-/// compared signal of every sample.
-std::size_t innovation_count(const NoisyRecord& record);
-/// Computes innovation_count() whitened innovations `out`, of unit variance at the true p. T: double or D8.
-template <class T>
-void innovations(const Effect& machine, const NoisyRecord& record, const std::vector<Gain>& gains,
-                 const std::vector<T>& p, const std::array<T, kSteady>& steady, T* out);
+/// Whitened differences between the means before the event and the operating point: P, Q, V, theta and, if
+/// recorded, Ifd.
+std::vector<double> steady_residuals(const Effect& machine, const NoisyRecord& record,
+                                     const std::vector<double>& p, const std::array<double, kSteady>& steady);
+
+/// Largest number of unknowns of linearise().
+constexpr Eigen::Index kMostUnknowns = 24;
+
+/// A parameter in units of its `scale`.
+struct ScaledParameter {
+  int index = 0;  ///< index in the effect's parameters
+  double scale = 1;
+};
+/// Residuals with the gains and the voltage of a filter, at the filter's own point: the steady residuals,
+/// then the whitened innovations. Unknowns: the parameters, then the operating point.
+struct LinearisedResiduals {
+  Eigen::VectorXd value;
+  /// Residuals x unknowns.
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian;
+  /// Response of the machine to the voltage without noise: outputs of each sample.
+  std::vector<std::array<double, kOutputs>> response;
+};
+LinearisedResiduals linearise(const Effect& machine, const NoisyRecord& record, const Filtered& filtered,
+                              const std::vector<double>& p, const std::array<double, kSteady>& steady,
+                              std::span<const ScaledParameter> parameters);
+
+/// Returns the residuals at another point, with the same gains and voltage. `response`: of the filter's
+/// point.
+Eigen::VectorXd residuals(const Effect& machine, const NoisyRecord& record, const Filtered& filtered,
+                          const std::vector<std::array<double, kOutputs>>& response,
+                          const std::vector<double>& p, const std::array<double, kSteady>& steady);
+
+/// Returns the number of residuals: one for each mean before the event (P, Q, V, theta and, if recorded,
+/// Ifd), then one for each compared signal of every sample.
+std::size_t residual_count(const NoisyRecord& record);
 
 }  // namespace swingbank::sim::direct

@@ -13,12 +13,11 @@ double mean(const std::vector<double>& x, std::size_t count) {
          static_cast<double>(count);
 }
 
-/// Returns a + share (b - a).
+}  // namespace
+
 Inputs between(const Inputs& a, const Inputs& b, double share) {
   return {a[kV] + share * (b[kV] - a[kV]), a[kTheta] + share * (b[kTheta] - a[kTheta])};
 }
-
-}  // namespace
 
 void fill_intervals(NoisyRecord& n) {
   const std::size_t count = n.behind.size();

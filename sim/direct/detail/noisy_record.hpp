@@ -52,6 +52,8 @@ struct NoisyRecord {
   [[nodiscard]] std::size_t samples() const { return in.size(); }
 };
 
+/// Returns a + share (b - a).
+Inputs between(const Inputs& a, const Inputs& b, double share);
 /// Computes the played-in voltage between the samples of `in`. Requires `leaps` of every interval.
 void fill_intervals(NoisyRecord& record);
 /// Returns the input of the likelihood, with at most `longest` [s] after the event.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/core/noise.hpp"
+#include "sim/direct/detail/innovations.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/direct/recorded.hpp"
 
@@ -91,6 +92,35 @@ void expect_bound_of_round_rotor_machines(std::size_t machines) {
 TEST(Likelihood, ReachesTheBoundOfRoundRotorMachines) { expect_bound_of_round_rotor_machines(kSomeMachines); }
 TEST(LikelihoodFull, ReachesTheBoundOfRoundRotorMachines) {
   expect_bound_of_round_rotor_machines(kAllMachines);
+}
+
+TEST(Likelihood, SensitivitiesAreDerivativesOfTheResiduals) {
+  const auto grid = test::configured_grid("ieee39_dataset_genrou", Conventions::psse());
+  const auto& machine = grid.plants[3].machine;
+  Recording r = recorded(grid, 16, 2.063)[3];
+  r.event = 2.0;
+  const NoisyRecord record = noisy_record(with_noise(r, 0.002, 1), 13.0);
+  std::vector<double> p = machine.p;
+  p[0] *= 1.2;  // away from the optimum
+  const std::array<double, kSteady> steady = {record.P0, record.Q0, record.V0, 0};
+  const std::vector<ScaledParameter> by = {{0, 2.0}, {1, 0.04}, {4, 3.0}, {8, 0.1}, {13, 0.3}};
+  const Filtered filtered = filter(*machine.effect, record, p, steady);
+  const LinearisedResiduals l = linearise(*machine.effect, record, filtered, p, steady, by);
+  const auto at = [&](std::size_t k, double change) {
+    auto moved = p;
+    auto point = steady;
+    if (k < by.size())
+      moved[static_cast<std::size_t>(by[k].index)] += change * by[k].scale;
+    else
+      point[k - by.size()] += change;
+    return residuals(*machine.effect, record, filtered, l.response, moved, point);
+  };
+  EXPECT_LT((at(0, 0) - l.value).norm(), 1e-8);
+  for (std::size_t k = 0; k < by.size() + kSteady; ++k) {
+    const Eigen::VectorXd difference = (at(k, 1e-5) - at(k, -1e-5)) / 2e-5;
+    EXPECT_LT((difference - l.jacobian.col(static_cast<Eigen::Index>(k))).norm(), 2e-3 * difference.norm())
+        << k;
+  }
 }
 
 TEST(Likelihood, NamesUnsupportedMachines) {
