@@ -64,8 +64,10 @@ py::array_t<double> values(const Sensitivities& s) {
 }  // namespace
 
 void bind_sensitivities(py::module_& module, PlantClass& of) {
-  py::class_<Sensitivities>(module, "Sensitivities",
-                            "Derivatives of the modelled channels with respect to the plant's parameters.")
+  py::class_<Sensitivities>(
+      module, "Sensitivities",
+      "Derivatives of the compared channels (P and Q; speed, Efd and Ifd if recorded) with "
+      "respect to the plant's parameters.")
       .def_property_readonly(
           "t", [](const Sensitivities& s) { return array(s.t); }, "Times, shape (samples,) [s].")
       .def_readonly("parameters", &Sensitivities::parameters, "Names, \"GENROU.H\".")
@@ -86,7 +88,7 @@ void bind_sensitivities(py::module_& module, PlantClass& of) {
       },
       py::arg("record"), py::arg("parameters") = std::vector<std::string>{}, py::kw_only(),
       py::arg("power_only") = false,
-      "Returns the derivatives of the modelled channels along a record, at the plant's values.\n\n"
+      "Returns the derivatives of the compared channels along a record, at the plant's values.\n\n"
       "`parameters`: names such as \"GENROU.H\"; default: those that `calibrate` may fit.");
 }
 
