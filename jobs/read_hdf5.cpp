@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> names;
   if (argc < 3) {  // complete commands are not parsed, because file names may begin with a dash
     jobs::CommandLine line(
-        "read an HDF5 or MATLAB file in a separate process, so that its crash does not end the command",
+        "read an HDF5 or MATLAB file in a separate process, so that a crash does not end the calling command",
         "swingbank read-hdf5");
     line.add("KIND", kind, "format of the file").required().one_of({"hdf5", "mat"});
     line.add("FILE", file, "data to read; the output is bytes, or a list of problems with exit code 3")
