@@ -10,11 +10,13 @@ namespace {
 
 using Eigen::Index, Eigen::VectorXd;
 
-/// Maximum number of steps of a fit of the whole plant, to find the leader (kLeaderSteps) and at the end.
+/// Maximum number of steps of a fit of the whole plant: brief fit (kLeaderSteps) and final fit
+/// (kPolishSteps).
 constexpr int kLeaderSteps = 8, kPolishSteps = 40;
-/// Maximum number of linearisations about an optimum, and of the steps of each identification that follows.
+/// Maximum number of rounds of linearisation and identification per optimum, and of steps of each
+/// identification.
 constexpr int kLinearRounds = 3, kLinearSteps = 8;
-/// Predicted reduction of chi2 below which no further linearisation is made.
+/// Predicted reduction of the cost (chi2 with priors) below which no further linearisation is made.
 constexpr double kSettledCost = 1.0;
 
 }  // namespace
@@ -35,7 +37,8 @@ VectorXd Polish::own_of(const Identified& h, const std::vector<double>& values) 
   return z;
 }
 
-/// Returns the point of the optimum that the reduced plant predicts.
+/// Returns the optimum that the reduced plant predicts, as a point, with the base model's parameters clamped
+/// to their ranges.
 Polish::Point Polish::expected(const Identified& h, const reduced::Reduction& reduction,
                                const reduced::Optimum& found) const {
   Point to{reduction.inference().offset + found.plant, own_of(h, found.values),

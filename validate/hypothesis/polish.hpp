@@ -52,9 +52,9 @@ class Polish {
   /// linearisation point of `from`.
   void briefly(Identified& h, const reduced::Reduction& from) const;
   /// Fits the whole plant from each optimum. Before the fit, the plant is linearised about the optimum and
-  /// the block is identified again, at most three times. These steps follow narrow valleys of the cost in
-  /// which a fit is slow, such as that of gain and T'do. An optimum is not fitted if such a linearisation
-  /// predicts a cost above `goal`.
+  /// the block is identified again, in at most three rounds. These rounds follow narrow valleys of the cost
+  /// in which a fit is slow, such as that of gain and T'do. An optimum is not fitted if a round after the
+  /// first predicts a cost above `goal`.
   void polish(Identified& h, const reduced::Reduction& from, double goal) const;
 
  private:
