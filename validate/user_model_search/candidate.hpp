@@ -1,7 +1,8 @@
 #pragma once
-// Candidates for a user-defined model u = f(signal) or u = f(time) of the inferred input. They are enumerated
-// on grids of their few parameters and ranked by regression on the inferred input, which is fast enough for
-// thousands of candidates. The leading candidates are then fitted to the records (search.hpp).
+// Candidates for a user-defined model u = f(signal) or u = f(time) of the inferred input. This input is the
+// additional torque or field voltage that explains the records (reduced/free_input.hpp). Candidates are
+// enumerated on grids of their few parameters and ranked by regression on the inferred input, which is fast
+// enough for thousands of candidates. The leading candidates are then fitted to the records (search.hpp).
 #include <array>
 #include <limits>
 #include <string>
@@ -30,10 +31,12 @@ struct UserModelTrace {
   std::vector<double> t;  ///< samples [s]
   /// [signal][sample] [pu on the machine's base].
   std::array<std::vector<double>, kUserModelSignals.size()> signal;
-  /// First time at which V is outside its band [s]; NaN: none.
+  /// First time at which V deviates from its value before the event by more than trigger_level() [s]; NaN:
+  /// none.
   double trigger = std::numeric_limits<double>::quiet_NaN();
-  double begin = 0;                  ///< start of the inferred input [s]
-  double rest = 0;                   ///< active power (torque) or field voltage before the event [pu]
+  double begin = 0;  ///< start of the inferred input [s]
+  /// Value before the event [pu]: active power if the input is a torque, else field voltage.
+  double rest = 0;
   std::vector<double> knots, input;  ///< knots [s] and values [pu] of the inferred input
 };
 
@@ -48,20 +51,22 @@ struct UserModelParameter {
 /// A candidate: text of the user-defined model, and its parameters.
 struct UserModelCandidate {
   fit::InputKind kind = fit::InputKind::torque;  ///< input to which the model's output is added
-  std::string family;             ///< "static", "lagged", "limited", "dead-banded", "periodic", "step", ...
-  std::string signal;             ///< name in kUserModelSignals, "time" or "time since the voltage deviation"
-  std::string words;              ///< description with {name} in place of a parameter's value
-  std::string value, body;        ///< expression and tables of the TOML file
-  std::string requirements = "";  ///< conditions on the parameters in the TOML file, in quotes
+  std::string family;       ///< "static", "lagged", "limited", "dead-banded", "periodic", "step", ...
+  std::string signal;       ///< name in kUserModelSignals, "time" or "time since the voltage deviation"
+  std::string words;        ///< description with {name} in place of a parameter's value
+  std::string value, body;  ///< expression and tables of the TOML file
+  /// Conditions for `require` in the TOML file, each in quotes: "w1 < w2", "w2 < w3".
+  std::string requirements = "";
   std::vector<UserModelParameter> parameters;  ///< parameters, in the order of the TOML file
   double explained = 0;                        ///< coefficient of determination of the inferred input
   double score = 0;  ///< Bayesian information criterion of the regression; lower is better
-  std::vector<std::vector<double>> time_series;  ///< [event][knot] [pu]
+  std::vector<std::vector<double>> time_series;  ///< output of the model [event][knot] [pu]
 };
 
-/// Returns the deviation of the voltage that starts a candidate's time [pu]. It exceeds the voltage's noise
-/// and is at most half of the deviation in the smallest event with a switching. Returns 0 if no event has a
-/// switching, or if the smallest deviation is too small.
+/// Returns the voltage deviation [pu] at which the signal "time since the voltage deviation" starts. It is
+/// above the voltage's noise. It is at most half of the largest deviation in any event with a switching, so
+/// that each such event starts the signal. Returns 0 if no event has a switching, or if the deviation in one
+/// of them is too small.
 double trigger_level(const noise::WhitenedEvents& events);
 
 /// Returns the best candidate of each family and signal, in ascending order of score. `level`: see

@@ -1,7 +1,8 @@
 #pragma once
-// Search for a user-defined model of the inferred input, if no known effect explains the records. Candidates
-// are ranked on the inferred input. The leading ones are fitted to the records and judged on held-out events,
-// like every hypothesis. Only a model that predicts unseen events is offered.
+// Search for a user-defined model of the inferred input (torque or field voltage), if no known effect
+// explains the records. Candidates are ranked by regression on the inferred input. The leading ones are
+// fitted to the records and judged on held-out events, like every hypothesis. Only a model that predicts
+// unseen events is offered.
 #include <memory>
 
 #include "validate/event/progress.hpp"
@@ -24,7 +25,7 @@ struct UserModelFinding {
 struct UserModelSearch {
   fit::InputKind kind = fit::InputKind::none;  ///< input of the search; none: no search
   std::vector<UserModelTrace> traces;          ///< inferred input and signals of each event
-  /// The best candidate of each kind, by regression on the inferred input.
+  /// Best candidate of each family and signal, in ascending order of score.
   std::vector<UserModelCandidate> ranked;
   /// Models that were fitted to the records: accepted ones first, then in descending order of evidence.
   std::vector<UserModelFinding> findings;
@@ -45,17 +46,17 @@ struct Unexplained {
   int threads = 1;                                        ///< number of threads
 };
 
-/// Searches for a model of the input with the lower reduced chi-square. Searches for the other input too if
-/// the first search finds no model and the other input explains about as much. Returns no search if neither
-/// input explains most of the residual.
+/// Searches for a model of that input, torque or field voltage, whose fit has the lower reduced chi-square.
+/// Searches for a model of the other input too if the first search finds no model and the other input
+/// explains about as much. Returns no search if neither input explains most of the residual.
 UserModelSearch search_user_models(const Unexplained& case_, const event::Progress& report = {});
 
 /// Returns for example "None of the 31 known effects explains the records. A user-defined model does: ...";
 /// empty without an accepted model.
 std::string user_model_sentence(const UserModelSearch& search, std::size_t hypotheses);
 
-/// Returns the plant with the user-defined model after the blocks of its slot, and sets `block` to its
-/// number.
+/// Returns the plant with the user-defined model inserted after the other blocks of the model's slot. Sets
+/// `block` to the number of the inserted block.
 sim::plant::Plant with_user_model(const sim::plant::Plant& plant, const sim::Effect& effect, int& block);
 
 }  // namespace swingbank::validate::user_model_search

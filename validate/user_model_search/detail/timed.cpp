@@ -147,7 +147,7 @@ class Timed {
             clock.triggered ? "{delay} after " + level : std::string("at {start} of the record"));
     if (clock.triggered)  // a delay of zero could not change on a logarithmic scale
       user_model.parameters.push_back({"delay", "s", std::max(0.02, at.begin), 0, 1e5, false,
-                                       "delay of the start after the voltage leaves its band"});
+                                       "delay of the start after the voltage deviation"});
     else
       user_model.parameters.push_back({"start", "s", at.begin, -1e5, 1e5, false, "start time in the record"});
     return user_model.parameters.back().name;
@@ -170,9 +170,9 @@ class Timed {
   }
   [[nodiscard]] std::string trigger() const {
     return fmt::format(
-        "\n[states.moved]\nunit = \"-\"\nmeaning = \"1 after the voltage has left its band\"\n"
+        "\n[states.moved]\nunit = \"-\"\nmeaning = \"1 after the voltage has deviated by {0:.4g} pu\"\n"
         "derivative = \"100 * clamp(abs(V - V0) / {0:.4g} - 1, 0, 1) * (1 - moved)\"\n"
-        "\n[states.since]\nunit = \"s\"\nmeaning = \"time since the voltage left its band\"\nderivative = \"moved\"\n",
+        "\n[states.since]\nunit = \"s\"\nmeaning = \"time since the voltage deviation\"\nderivative = \"moved\"\n",
         level_);
   }
 

@@ -9,7 +9,8 @@
 namespace swingbank::validate::user_model_search {
 namespace {
 
-/// Returns the time of the first sample at which the voltage is outside its band; NaN: never.
+/// Returns the time of the first sample after the start at which the voltage deviates by more than `level`
+/// [s]; NaN: none.
 double trigger_of(const event::FitEvent& e, double level) {
   const record::Record& r = e.played();
   const auto first = static_cast<std::size_t>(e.start.samples);
