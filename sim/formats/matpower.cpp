@@ -32,8 +32,8 @@ class CaseReader {
 
   network::Network read() {
     if (!(network_.frequency > 0) || !std::isfinite(network_.frequency))
-      problems_.add("a frequency of " + text_of(network_.frequency) + " Hz", file_,
-                    "a MATPOWER case contains no frequency", "give 50 or 60 Hz");
+      problems_.add(text_of(network_.frequency) + " Hz as the frequency", file_,
+                    "it must be positive; the case itself contains none", "give 50 or 60 Hz");
     version();
     base();
     table("bus", 13, &CaseReader::bus);
@@ -107,14 +107,17 @@ class CaseReader {
                     "give at least one row");
       return;
     }
+    const std::size_t wanted = std::max(columns, a->rows[0].values.size());
     for (const Row& row : a->rows) {
-      if (row.values.size() >= columns && row.values.size() == a->rows[0].values.size()) {
+      if (row.values.size() == wanted) {
         (this->*row_of)(row);
         continue;
       }
-      const std::size_t wanted = std::max(columns, a->rows[0].values.size());
       problems_.add("a row of " + name + " with " + std::to_string(row.values.size()) + " columns",
-                    where(row), std::to_string(wanted) + " are required", "complete the row");
+                    where(row),
+                    wanted == columns ? std::to_string(columns) + " are required"
+                                      : "the first row has " + std::to_string(wanted),
+                    "give it " + std::to_string(wanted) + " columns");
     }
   }
 
@@ -132,8 +135,8 @@ class CaseReader {
   int integer(const Row& row, std::size_t column, const char* name) {
     const long double value = row.values[column];
     if (value == std::floor(value) && std::abs(value) <= 999999999.0L) return static_cast<int>(value);
-    problems_.add(std::string(name) + " = " + text_of(value), where(row), "it is not a whole number",
-                  "give a whole number");
+    problems_.add(std::string(name) + " = " + text_of(value), where(row),
+                  "it is not a whole number of at most nine digits", "give such a number");
     return 0;
   }
   double radians(const Row& row, std::size_t column, const char* name) {
@@ -264,7 +267,7 @@ network::Network read_network(const std::filesystem::path& file, const RawOption
   if (options.frequency_hz && *options.frequency_hz != network.frequency)
     throw InputError({"a frequency of " + text_of(*options.frequency_hz) + " Hz", file.string(),
                       "the file has BASFRQ = " + psse::shortest(network.frequency) + " Hz",
-                      "drop the option or correct the file"});
+                      "drop --frequency-hz (in a config: frequency_hz) or correct the file"});
   return network;
 }
 

@@ -137,8 +137,9 @@ int Fields::integer(std::size_t i, const char* name, std::optional<int> fallback
       stop = end;
     }
   if (error != std::errc{} || stop != end || value > most || value < -most) {
-    problems_.add(std::string(name) + " = '" + f->text + "'", where(), "it is not a whole number",
-                  "give a whole number for " + std::string(name));
+    problems_.add(std::string(name) + " = '" + f->text + "'", where(),
+                  "it is not a whole number of at most nine digits",
+                  "give such a number for " + std::string(name));
     return fallback.value_or(0);
   }
   return value;

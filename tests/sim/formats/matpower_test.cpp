@@ -159,6 +159,28 @@ TEST(Matpower, TruncatedFilesAreReported) {
               HasSubstr("without a matching '['"));
 }
 
+std::string changed_case(const std::string& from, const std::string& to) {
+  std::string text = kCase;
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(Matpower, RowsOfAnotherLengthAreReported) {
+  const std::string longer = changed_case("110, 1, 1.1, 0.9", "110, 1, 1.1, 0.9, 0");
+  EXPECT_THAT(sentences_of([&] { parse_matpower(longer, "long.m", 60.0); }),
+              HasSubstr("a row of bus with 14 columns at long.m:10 (13 are required): give it 13 columns"));
+  const std::string first =
+      changed_case("1 80 20 Inf -Inf 1.02 150 1 200 0;", "1 80 20 Inf -Inf 1.02 150 1 200;");
+  const auto problems = problems_of([&] { parse_matpower(first, "short.m", 60.0); });
+  ASSERT_EQ(problems.size(), 1u) << "rows of the required length must not be refused";
+  EXPECT_EQ(problems[0].what, "a row of gen with 9 columns");
+}
+
+TEST(Matpower, NumbersOfMoreThanNineDigitsAreReported) {
+  const std::string text = changed_case("\t1\t3\t0", "\t12345678901\t3\t0");
+  EXPECT_THAT(sentences_of([&] { parse_matpower(text, "digits.m", 60.0); }),
+              HasSubstr("it is not a whole number of at most nine digits"));
+}
+
 TEST(Matpower, OtherVersionsAreRefused) {
   std::string t = kCase;
   t.replace(t.find("'2'"), 3, "'1'");
