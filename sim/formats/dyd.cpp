@@ -305,7 +305,9 @@ std::vector<DyrRecord> chosen_records(const DydSurvey& survey, const std::string
   for (const std::string& model : asked)
     if (!used.contains(capitals(model)))
       problems.add("no model " + capitals(model) + " to ignore or map", name,
-                   "the file has no record of that name", "correct the name or drop the option");
+                   "the file has no record of that name",
+                   "correct the name, or remove it from --ignore-model or --map-model (in a config: "
+                   "ignore_models, map_models)");
   problems.raise();
   return chosen;
 }

@@ -199,7 +199,8 @@ class DyrReader {
     for (const std::string& name : asked)
       if (!used_.contains(name) && !(ignore_.contains(name) && map_.contains(name)))
         problems_.add("no model " + name + " to ignore or map", name_, "the file has no record of that name",
-                      "correct the name or drop the option");
+                      "correct the name, or remove it from --ignore-model or --map-model (in a config: "
+                      "ignore_models, map_models)");
   }
 
   std::vector<std::string> lines_;

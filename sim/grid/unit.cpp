@@ -294,10 +294,12 @@ class UnitReader {
       if (all.contains(capitals(name)))
         unit_.notes.push_back("this unit has no record of " + capitals(name));
       else
-        problems_.add("no model " + name + " to drop or replace", choice_.dyr.string(),
-                      found_.empty() ? "the unit has no records"
-                                     : fmt::format("the unit has {}", fmt::join(found_, ", ")),
-                      "correct the name or drop the option");
+        problems_.add(
+            "no model " + name + " to drop or replace", choice_.dyr.string(),
+            found_.empty() ? "the unit has no records"
+                           : fmt::format("the unit has {}", fmt::join(found_, ", ")),
+            "correct the name, or remove it from --drop or --replace (under [grid] of a plant file: "
+            "ignore_models, map_models)");
     }
   }
 
