@@ -64,7 +64,7 @@ const Effect* effect_since_default(const std::string& model) {
   return nullptr;
 }
 
-/// A model of a .dyr: its effect, the loads that it applies to, and the order of its columns if it differs
+/// A model of a .dyr: its effect; for a load model, its scope; and the order of its columns if it differs
 /// from the effect's.
 struct Known {
   const Effect* effect = nullptr;
@@ -95,7 +95,8 @@ Known known_model(const formats::DyrRecord& record) {
   return known;
 }
 
-/// Returns the effect that already occupies the slot of `effect`, or nullptr.
+/// Returns the present effect that excludes `effect` from its slot, or nullptr. In a shared slot only
+/// `effect` itself does.
 const Effect* in_the_way(const plant::Plant& plant, const Effect& effect) {
   if (effect.slot == Slot::machine) return plant.machine.effect;
   if (effect.slot == Slot::transformer) return plant.transformer.effect;
@@ -151,7 +152,8 @@ void find_named_buses(std::vector<formats::DyrRecord>& records, const network::N
 }
 
 std::string lacking_text(const std::string& dyr) {
-  return "Swingbank has no such model; 'swingbank effects --coverage " + dyr + "' lists the available ones";
+  return "Swingbank has no such model; 'swingbank effects --coverage " + dyr +
+         "' shows which models of the file are supported";
 }
 std::string machine_names() {
   std::string names;
@@ -165,15 +167,17 @@ std::string columns_text(const Effect& effect) {
   for (const int column : effect.dyr_columns)
     text += " " + std::string(effect.parameters[static_cast<std::size_t>(column)].symbol);
   if (effect.at_shunt)
-    text += fmt::format(", and after the first {} a flag and an id for each of {} switched shunts",
-                        effect.at_shunt->columns, effect.at_shunt->beside);
+    text += fmt::format(
+        "; between the first {} of these and the others, a flag and an id for each of {} switched shunts",
+        effect.at_shunt->columns, effect.at_shunt->beside);
   return text;
 }
 
 namespace {
 
-/// Reduces a record of a switched shunt to the parameters of its model. Mechanically switched shunts are not
-/// modelled; the record's flags show whether it uses such shunts.
+/// Reduces a record of a switched shunt to the parameters of its model. Drops the fields of the further,
+/// mechanically switched shunts, which are not modelled. A parameter (SVSMO1: Flag1) still shows whether the
+/// record uses them.
 void without_shunts_beside(formats::DyrRecord& record, const ShuntRecord& layout, std::size_t columns) {
   std::vector<double>& v = record.values;
   if (record.model == layout.of_first) {
@@ -197,7 +201,7 @@ int number_in(const plant::Block& block, int parameter) {
   if (parameter < 0) return 0;
   const auto at = static_cast<std::size_t>(parameter);
   const double value = block.p[at];
-  // Any other value is not a bus number; check() refuses it.
+  // 0: none. A value outside the range is no bus number: SVSMO1's check() refuses it, other models ignore it.
   return value > 0.0 && value <= block.effect->parameters[at].high ? static_cast<int>(value) : 0;
 }
 
@@ -268,16 +272,17 @@ Completion complete(const Effect& effect, formats::DyrRecord& record, Lacking la
                      std::string(" every parameter, in this order, or let --complete-records do it"));
     return {};
   }
-  const std::string record_text = fmt::format("{} of '{}' at bus {} has {} of {} values", record.model,
-                                              record.id, record.bus, has, takes);
+  const std::string name = fmt::format("{} of '{}' at bus {}", record.model, record.id, record.bus);
   if (has < takes)
     return {true, "missing values at the end of records are set to zero or to defaults (--complete-records)",
-            fmt::format("{}: {} ({})", record_text, fill(effect, record.values, lacking), where)};
+            fmt::format("{} has {} of {} values: {} ({})", name, has, takes,
+                        fill(effect, record.values, lacking), where)};
   const std::vector<double> surplus(record.values.begin() + static_cast<std::ptrdiff_t>(takes),
                                     record.values.end());
   record.values.resize(takes);
   return {true, "surplus values at the end of records are ignored (--complete-records)",
-          fmt::format("{}: {} ({})", record_text, fmt::join(surplus, ", "), where)};
+          fmt::format("{} has {} values instead of {}; ignored: {} ({})", name, has, takes,
+                      fmt::join(surplus, ", "), where)};
 }
 plant::Block values_of(const Effect& effect, const formats::DyrRecord& record) {
   plant::Block block{&effect, effect.default_parameters()};
@@ -377,7 +382,7 @@ void check_fit(const plant::Plant& plant, const std::string& where, Problems& pr
   for (const plant::Block& block : plant.controls)
     if (const std::string why = slot_conflict(*plant.machine.effect, *block.effect); !why.empty())
       problems.add(fmt::format("{} for generator {}", block.effect->name, plant.name), where, why,
-                   "remove the record, or correct the record of the source");
+                   "remove this record, or correct that of the machine or converter");
 }
 
 }  // namespace swingbank::sim::grid

@@ -16,7 +16,7 @@ namespace swingbank::sim::grid {
 /// precedence.
 enum class Reach { load, owner, zone, area, all };
 
-/// Returns the effect of a record, or nullptr, and the loads that it applies to. Aliases are resolved: IEELAR
+/// Returns the effect of a record, or nullptr, and for a load model its scope. Aliases are resolved: IEELAR
 /// is IEELBL for an area.
 std::pair<const Effect*, Reach> effect_of_dyr(const formats::DyrRecord& record);
 /// Resolves extended bus names of records (name and base voltage, 'UNIT        20.000') to bus numbers. A
@@ -83,7 +83,7 @@ bool reads_field_voltage(const Effect& machine);
 bool acts_on_field(Slot slot);
 /// Returns one sentence per control that acts on the field voltage, if the machine does not depend on it.
 std::vector<std::string> idle_controls(const plant::Plant& plant);
-/// Adds a problem for every control that is incompatible with the plant's source.
+/// Adds a problem for every control that is incompatible with the plant's machine or converter.
 void check_fit(const plant::Plant& plant, const std::string& where, Problems& problems);
 
 }  // namespace swingbank::sim::grid

@@ -121,7 +121,7 @@ TEST(FoundCase, CompletesOrCutsRecordsOfAnotherLengthOnRequest) {
               ElementsAre(HasSubstr("has 1 of 2 values: D = 0 (")))
       << "the remark must name every completed value";
   EXPECT_THAT(places(grid, "surplus values at the end of records"),
-              ElementsAre(HasSubstr("has 3 of 2 values: 7 (")));
+              ElementsAre(HasSubstr("has 3 values instead of 2; ignored: 7 (")));
   options.complete_records = Lacking::standard;
   const Grid standard = make({}, dyr, options);
   const plant::Block& machine = standard.plants[0].machine;
