@@ -76,7 +76,7 @@ class Check : Findings {
     for (const auto* c : {&r_.V, &r_.theta, &r_.P, &r_.Q})
       if (c->size() != n)
         refuse("incomplete", "channels of unequal length", "V, theta, P and Q need one value per sample",
-               "complete the columns");
+               "give columns of equal length");
     for (const auto* c : {&r_.t, &r_.V, &r_.theta, &r_.P, &r_.Q, &r_.f, &r_.speed, &r_.Efd, &r_.Ifd})
       for (std::size_t k = 0; k < c->size(); ++k)
         if (!std::isfinite((*c)[k]))

@@ -258,7 +258,8 @@ class CsvReader {
     }
     if (ragged)
       faults.add("line", fmt::format("{} values", cells_.size()), sample,
-                 fmt::format("the header has {} columns", width_), "complete the line or remove it");
+                 fmt::format("the header has {} columns", width_),
+                 fmt::format("give {} values, or remove the line", width_));
     for (std::size_t c = 0; c < raw.columns.size(); ++c) {
       RawColumn& column = raw.columns[c];
       double v = kNoValue;

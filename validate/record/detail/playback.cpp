@@ -114,7 +114,7 @@ class Playback {
     if (!t && t_.empty() && !powerworld_) return;  // a title
     if (!t || !v || (!f_.empty() && !f)) {
       problems_.add("a line that is not a sample", fmt::format("{}:{}", name_, line_),
-                    "it must hold time, voltage and frequency as numbers", "complete the line or remove it");
+                    "it must hold time, voltage and frequency as numbers", "correct the line or remove it");
       return;
     }
     lines_.push_back(line_);
