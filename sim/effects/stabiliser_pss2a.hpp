@@ -19,8 +19,8 @@ struct Model {
   u1 (IC1), u2 (IC2): speed deviation (1), electrical power on the machine's base (3), accelerating power
      Pm - P (4), voltage (5).
   Bypassed: washout 2 with Tw2 = 0, washout 4 with Tw4 = 0, lags with T6, T7 = 0, lead-lags with T2, T4 = 0,
-     the ramp-tracking filter with M = 0 or N = 0. KS1 = 0 disables all, KS2 = 0 the second input;
-     a disabled part needs no Tw1, Tw3 and T9.
+     the ramp-tracking filter with M = 0 or N = 0. KS1 = 0 disables all, KS2 = 0 the second input.
+     Tw1, Tw3 and T9 may be 0 if their part is disabled or bypassed.
 )";
   /// The parameters of PSS2B up to T4, then the output limits.
   static constexpr int kShared = B::T4 + 1, VSTMAX = kShared, VSTMIN = kShared + 1, kCount = kShared + 2;

@@ -28,7 +28,7 @@ struct Model {
      Pm - P (4), voltage (5).
   Bypassed: washout 2 with Tw2 = 0, washout 4 with Tw4 = 0, lags with T6, T7 = 0, lead-lags with T2, T4,
      T11 = 0, the ramp-tracking filter with M = 0 or N = 0. KS1 = 0 disables all, KS2 = 0 the second
-     input; a disabled part needs no Tw1, Tw3 and T9.
+     input. Tw1, Tw3 and T9 may be 0 if their part is disabled or bypassed.
 )";
   enum P {
     IC1,
@@ -82,7 +82,7 @@ struct Model {
       {"Tw1", "Tw1", "s", 2.0, 0.01, 100.0, kNoNullValue, "first washout of the first input"},
       {"Tw2", "Tw2", "s", 2.0, 0.0, 100.0, kNoNullValue, "second washout of the first input (0: bypass)"},
       {"T6", "T6", "s", 0.02, 0.0, 10.0, kNoNullValue, "lag of the first input (0: bypass)",
-       literature::own("one cycle of 50 Hz; CIM has none")},
+       literature::own("one cycle of 50 Hz; CIM has no default")},
       {"Tw3", "Tw3", "s", 2.0, 0.01, 100.0, kNoNullValue, "first washout of the second input"},
       {"Tw4", "Tw4", "s", 0.0, 0.0, 100.0, kNoNullValue, "second washout of the second input (0: bypass)"},
       {"T7", "T7", "s", 2.0, 0.0, 100.0, kNoNullValue, "lag of the second input (0: bypass)"},
@@ -100,9 +100,9 @@ struct Model {
       {"T4", "T4", "s", 0.03, 0.0, 20.0, kNoNullValue, "second lag (0: bypass)",
        literature::own("CIM has 0.02")},
       {"T10", "T10", "s", 0.02, 0.0, 20.0, kNoNullValue, "third lead",
-       literature::own("small, so that the lead-lag acts; CIM has none")},
+       literature::own("not zero, so that the lead-lag acts; CIM has no default")},
       {"T11", "T11", "s", 0.03, 0.0, 20.0, kNoNullValue, "third lag (0: bypass)",
-       literature::own("small, so that the lead-lag acts; CIM has none")},
+       literature::own("not zero, so that the lead-lag acts; CIM has no default")},
       upper_limit(
           {"VS1MAX", "VS1MAX", "pu", 2.0, 0.0, 100.0, kNoNullValue, "upper limit of the first input"}),
       lower_limit(
@@ -179,11 +179,13 @@ struct Model {
                       "frequency (2) and voltage slope (6) are not modelled",
                       who),
           fmt::format("give {} = 1, 3, 4 or 5", parameters[i].symbol));
-    for (int i : {REM1, REM2})  // p[i - 1] is the input code; only a voltage can be remote
-      values.refuse(p[i] != 0.0 && p[i - 1] == 5.0, i, fmt::format("{} measures only its own machine", who),
+    for (int i : {REM1, REM2})  // p[i - 1]: input code; the bus concerns the voltage only
+      values.refuse(p[i] != 0.0 && p[i - 1] == 5.0, i,
+                    fmt::format("{} measures the voltage of its own machine only", who),
                     fmt::format("give {} = 0", parameters[i].symbol));
     for (int i : {M, N})
-      values.refuse(!(p[i] >= 0.0) || p[i] != static_cast<int>(p[i]), i, "it counts lags and stages",
+      values.refuse(!(p[i] >= 0.0) || p[i] != static_cast<int>(p[i]), i,
+                    i == M ? "it is the number of lags of a stage" : "it is the number of stages",
                     "give a whole number >= 0");
     values.refuse(p[M] * p[N] > kRampLags, values.text(M, N), "the ramp-tracking filter has at most 8 lags",
                   "give M N <= 8");
@@ -276,8 +278,8 @@ struct Model {
     for (const auto& [state, most, least] : {std::tuple{w1, VS1MAX, VS1MIN}, {w3, VS2MAX, VS2MIN}}) {
       const double now = value_of(x[state]);
       if (now > value_of(p[most]) || now < value_of(p[least]))
-        return fmt::format("an input of {:.4f} pu is outside {}, {} = {:g}, {:g} pu", now,
-                           parameters[least].symbol, parameters[most].symbol, value_of(p[least]),
+        return fmt::format("an input of {:.4f} pu is outside the range from {} = {:g} to {} = {:g} pu", now,
+                           parameters[least].symbol, value_of(p[least]), parameters[most].symbol,
                            value_of(p[most]));
     }
     T dx[std::size(states)];
