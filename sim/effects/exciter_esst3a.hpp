@@ -55,7 +55,7 @@ struct Model {
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
-       literature::own("as EXST1's; CIM has none")},
+       literature::own("as EXST1's; CIM has no default")},
       upper_limit(
           {"VIMAX", "VIMAX", "pu", 0.2, 0.0, 1000.0, kNoNullValue, "upper limit of the voltage error"}),
       lower_limit(

@@ -35,7 +35,7 @@ struct Model {
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
-       literature::own("as EXST1's; CIM has none"), kRange},
+       literature::own("as EXST1's; CIM has no default"), kRange},
       {"KPR", "KPR", "pu", 10.75, 0.0, 1000.0, kNoNullValue, "voltage regulator, proportional"},
       {"KIR", "KIR", "1/s", 10.75, 0.0, 1000.0, kNoNullValue, "voltage regulator, integral"},
       upper_limit(

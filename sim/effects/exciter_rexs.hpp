@@ -80,7 +80,7 @@ struct Model : shared::Alternator<Model> {
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
-       literature::own("as ESAC6A's; CIM has none")},
+       literature::own("as ESAC6A's; CIM has no default")},
       {"KVP", "KVP", "pu", 2800.0, 0.0, 20000.0, kNoNullValue, "voltage regulator, proportional"},
       {"KVI", "KVI", "1/s", 0.0, 0.0, 20000.0, kNoNullValue, "voltage regulator, integral"},
       upper_limit({"VIMAX", "VIMAX", "pu", 0.1, 0.001, 1000.0, kNoNullValue,

@@ -32,7 +32,7 @@ struct Model {
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
-       literature::own("as EXST1's; CIM has none")},
+       literature::own("as EXST1's; CIM has no default")},
       {"TC1", "TC1", "s", 0.8, 0.0, 100.0, kNoNullValue, "first lead"},
       {"TB1", "TB1", "s", 6.0, 0.0, 100.0, kNoNullValue, "first lag (0: bypass)"},
       {"TC2", "TC2", "s", 0.08, 0.0, 100.0, kNoNullValue, "second lead"},

@@ -88,7 +88,7 @@ struct Model {
                        kPowers[] = {PGV1, PGV2, PGV3, PGV4, PGV5, PGV6};
   static constexpr Source defaults_from = literature::cim("GovHydro3");
   static constexpr Source bounds_from = shared::kNoCases;
-  static constexpr Source kCurve = literature::own("nearly straight; CIM has none");
+  static constexpr Source kCurve = literature::own("nearly straight; CIM has no default");
   static constexpr Source kBandHz = literature::own("1.2 Hz: wider than any governor's dead-band");
   static constexpr Source kOfPid =
       literature::own("proportional gain of the PID; CIM's is that of the double derivative");

@@ -30,14 +30,14 @@ struct Model {
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"K", "K", "pu", 20.0, 0.0, 200.0, 0.0, "gain, the reciprocal of droop",
-       literature::own("a droop of 5 %; CIM has none")},
+       literature::own("a droop of 5 %; CIM has no default")},
       {"T1", "T1", "s", 50.0, 0.0, 500.0, kNoNullValue, "lag of the governor (0: none)"},
       {"T2", "T2", "s", 5.0, 0.0, 100.0, kNoNullValue, "lead of the governor"},
       {"T3", "T3", "s", 0.5, 0.0, 100.0, kNoNullValue, "gate actuator (0: bypass)"},
       upper_limit({"PMAX", "PMAX", "pu", 1.0, 0.1, 5.0, kNoNullValue, "upper limit of the gate",
-                   literature::own("rated power; CIM has none")}),
+                   literature::own("rated power; CIM has no default")}),
       lower_limit({"PMIN", "PMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the gate",
-                   literature::own("shut; CIM has none")}),
+                   literature::own("shut; CIM has no default")}),
       {"T4", "T4", "s", 1.0, 0.0, 30.0, 0.0, "water starting time", literature::cim("GovHydro1, Tw")}};
   static constexpr int dyr_columns[] = {K, T1, T2, T3, PMAX, PMIN, T4};
   enum C { gain, iT1, lead, iT3, high, low, water_lead, water_lag, Pref, coefficients };

@@ -5,7 +5,8 @@
 namespace swingbank::sim::effects::load_cim6 {
 
 struct Model : load_cim5::Model {
-  static constexpr std::string_view name = "CIM6", title = "induction motor, load torque by its polynomial",
+  static constexpr std::string_view name = "CIM6",
+                                    title = "motor of CIM5 with the load torque polynomial of the .dyr",
                                     source = "PSS/E CIM6BL; equations as of CIM5", dyr_name = "CIM6BL";
   static constexpr std::string_view description = R"(
   The motor of CIM5 (swingbank effects CIM5) with the load torque polynomial of the .dyr:

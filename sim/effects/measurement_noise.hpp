@@ -16,8 +16,8 @@ struct Model {
                                         "quantifying noise in PMU data\", IEEE PESGM 2016";
   static constexpr Slot slot = Slot::measurement;
   static constexpr std::string_view description = R"(
-  V --( 1 + relative g1 )--( e^{j angle g2} )--( + V (g3 + j g4) )-- V'       I likewise with its own g
-  df' = df + frequency g / f0
+  V --( 1 + sr g1 )--( e^{j sa g2} )--( + sV (g3 + j g4) )-- V'       I likewise with sI and its own g
+  df' = df + sf g5 / f0
 
   Every g is standard normal, independent between channels and samples. The same seed gives the same noise,
   whatever the record's length. It is white at the sampling rate; a subsequent filter colours it.

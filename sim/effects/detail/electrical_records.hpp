@@ -1,6 +1,6 @@
 #pragma once
-// Common parameters of the electrical controls REECA1, REECB1, REECC1 and REECD1, with their records and
-// checks.
+// Common parameters of the electrical controls REECA1, REECB1, REECC1 and REECD1: unit, default and range of
+// each, and checks.
 #include <array>
 #include <string_view>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Timers whose time is a state, with and without latching after the delay.
+// Timers whose elapsed time is a state variable, with and without latching after the delay.
 #include "sim/effects/detail/renewable.hpp"
 
 namespace swingbank::sim::effects::shared {

@@ -1,10 +1,11 @@
 #pragma once
-// Non-windup integral of a PI regulator: integration stops while the regulator's output is beyond a limit.
+// Non-windup integral of a PI regulator: while the regulator's output is beyond a limit, the integral changes
+// only back towards the limit.
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim::effects::shared {
 
-inline constexpr double kIntegralBand = 2e-3;  ///< width beyond a limit over which integration stops [pu]
+inline constexpr double kIntegralBand = 2e-3;  ///< width of the transition beyond a limit [pu]
 
 /// Returns the derivative of a PI's integral. It is zero while the unlimited output `out` is beyond a limit
 /// and `derivative` would move it further out, else `derivative`. The transition is linear over

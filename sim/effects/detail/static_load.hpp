@@ -1,6 +1,7 @@
 #pragma once
-// Common part of the static loads ZIP, LDFR and IEEL: the lagged voltage, which measures the frequency; the
-// current of an admittance; checks. For ZIP and LDFR also the parts of constant current and power.
+// Common part of the static loads ZIP, LDFR and IEEL: the lag of the voltage phasor, from which the
+// frequency is derived; the current of an admittance; checks. For ZIP and LDFR also the parts of constant
+// current and power.
 #include <fmt/format.h>
 
 #include <initializer_list>
