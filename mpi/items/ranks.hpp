@@ -44,7 +44,8 @@ class Ranks {
   /// stop signal, items in progress are finished and no others are started. Collective; rank 0 distributes
   /// the items and also works. Returns true on all ranks if every item is done. An item that exceeds its time
   /// limit ends the program on all ranks, because its rank may hang. An exception of `work` or `done` also
-  /// ends the run on all ranks, so neither may throw because of an item's content.
+  /// ends the run on all ranks. `work` must therefore return an error in an item's content as a result
+  /// instead of throwing it.
   [[nodiscard]] virtual bool share_items(const SharedItems& shared) const = 0;
 };
 
