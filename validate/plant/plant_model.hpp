@@ -21,7 +21,7 @@ struct PlantModel {
   std::string sha256;              ///< of that file's bytes
   sim::plant::Plant plant;         ///< the plant; each record sets its power
   sim::Conventions conventions;    ///< conventions of the simulator for which the parameters are valid
-  record::RecordBase record_base;  ///< bases of "pu" in the records of this plant
+  record::RecordBase record_base;  ///< per-unit bases of the records of this plant
   record::ReadOptions reading;     ///< columns and time range of its records
   std::vector<std::filesystem::path> user_models =
       {};                ///< files of user-defined models that define some of its effects

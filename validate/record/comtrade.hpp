@@ -33,7 +33,7 @@ struct Comtrade {
   double nominal = 0;                      ///< nominal frequency of the grid [Hz]
   std::string start;                       ///< date and time of the first sample, as written
   std::string kind;                        ///< "ASCII", "BINARY", "BINARY32" or "FLOAT32"
-  std::vector<double> t;                   ///< [s]; 0 at the first sample
+  std::vector<double> t;                   ///< [s]; 0 at the file's first sample
   std::vector<ComtradeStretch> stretches;  ///< in order; empty if time stamps determine the times
   double resolution = 0;  ///< rounding of the time stamps [s]; 0 if a rate determines the times
   std::vector<ComtradeChannel> channels;  ///< analogue channels, in the order of the configuration

@@ -57,14 +57,15 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
   for (std::size_t p = 0; p < 3; ++p) {
     const Wave* wave = set.waves[p];
     w.skew[p] = wave ? wave->channel->skew : 0;
-    names[p] = wave ? wave->channel->id : std::string("the third");
+    names[p] = wave ? wave->channel->id : std::string("the computed phase");
     w.samples[p] = samples_of(set, p, faults);
   }
   PhasorTrack track = phase_phasors(w, nominal, rate);
   if (const auto fault = sequence_fault(track.x, names))
     problems.add(fault->what, comtrade.file, fault->why,
                  fault->remedy + " (the .cfg defines the channels' names and phases)");
-  // Times and angles refer to the record's first sample, which make_even may have removed.
+  // t = 0 is the file's first sample. make_even may have removed it: the first remaining sample is at
+  // `begin`, and the phasors are turned back by this time.
   const double begin = comtrade.t.front();
   Sequence sequence;
   for (std::size_t k = 0; k < track.t.size(); ++k) {
@@ -75,7 +76,7 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
   return sequence;
 }
 
-/// Notes the channels of a quantity unless they are three phases to neutral.
+/// Adds notes to the record if a quantity is given line to line or by two channels only.
 void note_set(const WaveSet& set, bool voltage, Record& about) {
   if (set.between)
     about.notes.emplace_back(
@@ -117,7 +118,8 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
   const auto v = choose_waves(waves, true, options, comtrade.file, problems);
   const auto i = choose_waves(waves, false, options, comtrade.file, problems);
   if (!(base.kv > 0))
-    problems.add("waveforms", comtrade.file, "the plant file has no base_kv under [record]",
+    problems.add("waveforms without a base voltage", comtrade.file,
+                 "the plant file has no base_kv under [record]",
                  "add base_kv (line to line) under [record] in the plant file");
   if (comtrade.nominal > 0 && std::abs(comtrade.nominal - base.frequency) > 0.5)
     problems.add(fmt::format("a record of a {:g} Hz grid", comtrade.nominal), comtrade.file,

@@ -13,7 +13,7 @@
 
 namespace swingbank::validate::record {
 
-/// Bases of columns in "pu".
+/// Bases for the conversion of columns to per unit.
 struct RecordBase {
   double mva = 100.0;       ///< base of P_pu and Q_pu [MVA]
   double frequency = 60.0;  ///< base of f_pu and omega_pu [Hz]
@@ -83,8 +83,9 @@ struct Record {
   std::string start;               ///< time stamp of t = 0 as written, if any
   std::optional<double> epoch;     ///< UTC of t = 0 [s since 1970-01-01], if known
   std::vector<std::string> notes;  ///< changes made on reading that affect the interpretation of results
-  std::vector<double> theta_as_written;  ///< [rad], before unwrapping; empty if the angle was computed
-  /// Returns the angle before unwrapping; that of `theta` if it was computed.
+  /// Angle before unwrapping [rad]; empty if the angle was computed or frames were lost.
+  std::vector<double> theta_as_written;
+  /// Returns theta_as_written, or `theta` if it is empty.
   [[nodiscard]] const std::vector<double>& written_angle() const {
     return theta_as_written.empty() ? theta : theta_as_written;
   }
@@ -98,8 +99,8 @@ struct Record {
   /// compared channel has no value. Empty: none.
   std::vector<char> lost;
 
-  /// Returns the event that opens the breaker; nullptr if there is none, or if the tested component is not
-  /// connected to the grid.
+  /// Returns the event that opens the breaker; nullptr if there is none, or if an exciter or a governor is
+  /// tested alone.
   [[nodiscard]] const StagedEvent* breaker() const;
   /// Whether the breaker is open during the whole record.
   [[nodiscard]] bool open_circuit() const {
@@ -128,9 +129,10 @@ constexpr double kShortestRecord = 0.1;
 /// Longest gap of lost frames that is interpolated [s].
 constexpr double kLongestGap = 0.2;
 
-/// Column of the file for each quantity: {"V", "BUS1.VPM [kV]"}. Quantities are named as in word_of(). The
-/// column is identified by its heading, or by "#3" for the third one. The unit follows in brackets if the
-/// file gives none. A leading "-" reverses the sign.
+/// Column of the file for each quantity: {"V", "BUS1.VPM [kV]"}. Quantities have the names of the members of
+/// Record, and "I" and "phi" for the current (word_of() in detail/columns.hpp). The column is identified by
+/// its heading, or by "#3" for the third one. The unit follows in brackets if the file gives none. A leading
+/// "-" reverses the sign.
 using ColumnMap = std::map<std::string, std::string>;
 
 /// Options of reading a record.
@@ -143,7 +145,8 @@ struct ReadOptions {
   bool power = true;       ///< P and Q (or the current) are required; false: they may be empty
   bool part = false;       ///< the file is one of several that are joined to one record
   Component component = Component::plant;  ///< tested part of the plant
-  /// Columns that a component's record must have: one word of each list ({"speed", "f"}).
+  /// Columns that a component's record must have: at least one quantity of each inner list. {"speed", "f"}
+  /// means speed or frequency.
   std::vector<std::vector<std::string>> needed = {};
   std::vector<StagedEvent> staged = {};  ///< staged events of all records of the plant
   bool angle = false;  ///< a measured angle is required; false: it may be integrated from f, or be missing

@@ -23,11 +23,11 @@ constexpr std::array<std::string_view, kQuantities> kColumnMeanings = {
     "field current",
     "current out of the machine",
     "angle of the current",
-    "stabiliser output (component)",
-    "voltage reference (component)",
-    "mechanical power (component)",
-    "reference of the mechanical power (component)",
-    "gate or valve position (component)",
+    "stabiliser output (only for the test of one component)",
+    "voltage reference (only for the test of one component)",
+    "mechanical power (only for the test of one component)",
+    "reference of the mechanical power (only for the test of one component)",
+    "gate or valve position (only for the test of one component)",
 };
 
 /// Returns the columns of a quantity: "V_pu", "V_kV", "V_kV_ln".
@@ -72,8 +72,9 @@ std::string record_schema() {
       {"$schema", "http://json-schema.org/draft-07/schema#"},
       {"title", "Row of a record of Swingbank"},
       {"description",
-       "One row of a text file by its column names. null: no value. Columns with other names are ignored, unless "
-       "their names are other spellings of these (validate/record/README.md) or a map of columns names them."},
+       "One row of a text file: its values under their column names. null: no value. Columns with other "
+       "names are ignored, unless their names are other spellings of these (validate/record/README.md) or a "
+       "map of columns names them."},
       {"type", "object"},
       {"properties", properties},
       {"allOf", SchemaJson::array({has_column(Quantity::time), has_column(Quantity::V), power})}};

@@ -164,7 +164,7 @@ class Combination {
     }
     for (std::size_t p = 0; p < 3; ++p)
       if (!sizes[p]) {
-        names[p] = "the third";
+        names[p] = "the computed phase";
         for (std::size_t k = 0; k < x[(p + 1) % 3].size(); ++k)
           x[p].push_back(-x[(p + 1) % 3][k] - x[(p + 2) % 3][k]);
       }

@@ -23,11 +23,11 @@ struct PhasorTrack {
 
 /// Computes phasors with a sliding window of one nominal cycle (rectangular, one-cycle Fourier filter: Phadke
 /// and Thorp, Synchronized Phasor Measurements and Their Applications, 2), `phasors_per_second` times a
-/// second, with time stamps in the middle. The positive sequence of balanced waveforms is free of harmonics
-/// and, at off-nominal frequency, of the negative-frequency image. Its magnitude is low by 1 - sinc(f/f0 -
-/// 1): 0.05 % at 1 Hz off nominal. Samples at the window's ends are weighted by the part of their interval
-/// inside, so a cycle need not contain a whole number of samples. Returns an empty track if the waveforms are
-/// shorter than a cycle.
+/// second, with time stamps in the middle. At nominal frequency the window rejects harmonics. At off-nominal
+/// frequency the positive sequence of balanced waveforms is free of the negative-frequency image. Its
+/// magnitude is low by 1 - sinc(f/f0 - 1): 0.05 % at 1 Hz off nominal. Samples at the window's ends are
+/// weighted by the part of their interval inside, so a cycle need not contain a whole number of samples.
+/// Returns an empty track if the waveforms are shorter than a cycle.
 PhasorTrack phase_phasors(const Waveforms& waves, double nominal, double phasors_per_second);
 
 /// Returns the positive sequence of phasors a, b, c. For voltages ab, bc, ca, it is the line-to-neutral one:
