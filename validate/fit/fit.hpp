@@ -70,7 +70,7 @@ struct Fit {
   int iterations = 0;      ///< number of iterations
   bool converged = false;  ///< whether the search ended at a minimum
   std::string failed;      ///< reason why the start could not be evaluated; empty: it was evaluated
-  /// Returns the reduced chi-square of all events [-].
+  /// Returns the reduced chi-square of all events: chi2 divided by the number of compared values [-].
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 

@@ -16,7 +16,7 @@ struct EventFit {
   /// Model - measured, whitened: [channel][sample]; 0 at samples that are not compared.
   std::vector<std::vector<double>> residual;
   NoiseModel noise;  ///< noise model in which chi2 and residual are computed
-  /// Reduced chi-square [-]; 1 if the residual is noise only.
+  /// Reduced chi-square: chi2 divided by the number of compared values [-]; 1 if the residual is noise only.
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
