@@ -21,7 +21,7 @@ struct Trial {
 /// A local minimum of the cost.
 struct Optimum {
   std::vector<double> values;  ///< values of the trial's free parameters
-  Eigen::VectorXd plant;       ///< changes of the plant's parameters, on the axes of the inference
+  Eigen::VectorXd plant;       ///< changes of the plant's parameters, in z (fit/axis.hpp)
   Eigen::VectorXd series;      ///< response of the trial (ReducedCost::responses)
   double cost = 0;             ///< chi2 of the records and of the priors of plant and block
   int starts = 0;              ///< number of starts that ended within 1 of this cost

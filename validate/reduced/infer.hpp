@@ -1,8 +1,9 @@
 #pragma once
-// Inference of the torque and the field voltage that the records imply. The time series are estimated
-// together with the parameters of the submitted model and with the initial state and switching times of each
-// event. The machine's equations hold even if its controls are wrong, so a few Gauss-Newton steps from the
-// submitted values suffice. The log evidence decides which of the two inputs is needed.
+// Inference of the torque and the field voltage that the records imply, as time series added to Tm and Efd of
+// the model. They are estimated together with the parameters of the submitted model and with the initial
+// state and switching times of each event. The free inputs replace whatever the controls do wrong, and the
+// machine's equations hold, so a few Gauss-Newton steps from the submitted values suffice. The log evidence
+// decides which of the two inputs is needed.
 #include <Eigen/Dense>
 #include <span>
 #include <vector>
@@ -19,8 +20,8 @@ struct Knots {
 };
 
 /// Whitened residuals of one event (model - measured) and their Jacobians at the point of an Inference:
-/// [value][parameter]. Plant parameters are on the axes of a fit (fit/axis.hpp), the event's state is in its
-/// own units (fit/states.hpp), inputs are in pu.
+/// [value][parameter]. Plant parameters are in the search's coordinate z (fit/axis.hpp), the event's state is
+/// in the units of the search (fit/states.hpp), inputs are in pu.
 struct EventSensitivities {
   Knots knots;                                  ///< knots of the inputs
   Eigen::MatrixXd plant, state, torque, field;  ///< no columns for an input that is not free
@@ -28,7 +29,7 @@ struct EventSensitivities {
   /// Posterior standard deviations of the inputs at the knots [pu]; set by infer_smooth() only.
   Eigen::VectorXd torque_deviation, field_deviation;  ///< [knot]
   Eigen::VectorXd residual;                           ///< [value], model - measured, whitened
-  Eigen::VectorXd state_at;                           ///< estimate of the state, in its units
+  Eigen::VectorXd state_at;                           ///< estimate of the state, in the units of the search
 };
 
 /// Selects the free inputs.
@@ -43,21 +44,21 @@ struct Inference {
   /// additional block.
   sim::plant::Plant base, plant;           ///< submitted and simulated plant
   std::vector<fit::FreeParameter> free;    ///< free parameters of `base`
-  Eigen::VectorXd offset;                  ///< free parameters minus their prior means, on their axes
-  std::vector<event::EventState> states;   ///< states of the events, including both inputs
+  Eigen::VectorXd offset;                  ///< free parameters minus their prior means, in z
+  std::vector<event::EventState> states;   ///< states of the events, including the free inputs
   std::vector<EventSensitivities> events;  ///< residuals and Jacobians of the events
   noise::NoiseModel noise;                 ///< noise model of the residuals
   double chi2 = 0;                         ///< sum of squared whitened residuals
   /// -2 log evidence by Laplace's approximation, up to a constant common to all inferences of these events.
   double criterion = 0;
-  double intensity = 1.0;     ///< intensity of the inputs' random walk, relative to the prior's [-]
+  double intensity = 1.0;     ///< factor on the prior variance of the inputs' random walk [-]
   int values = 0, steps = 0;  ///< number of compared values; number of Gauss-Newton steps
-  /// Returns the reduced chi-square [-].
+  /// Returns the reduced chi-square: chi2 divided by the number of compared values [-].
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
-/// A change of the simulated plant in quantities that are not free: a parameter leaves its null value, or an
-/// instrument has an error.
+/// A change of the simulated plant in quantities that are not free: a parameter leaves the value at which its
+/// effect vanishes (null value), or an instrument has an error.
 struct Change {
   sim::plant::Plant from, to;  ///< plant before and after the change
 };
@@ -69,11 +70,12 @@ void add_changes(Inference& inference, const noise::WhitenedEvents& events,
 /// Prior variance rate of an input's random walk [pu^2/s]. A field voltage may run from one ceiling to the
 /// other within a second. A turbine's power changes by about a tenth of its rating in a second.
 inline constexpr double kFieldWalk = 1.0, kTorqueWalk = 0.01;  ///< field voltage; torque
-/// Returns the square root of the prior precision of each knot given the previous knot [1/pu].
+/// Returns 1 / prior standard deviation of the input's change from the previous knot to each knot [1/pu]; at
+/// the first knot, of the input itself.
 Eigen::VectorXd walk_weights(const Knots& knots, event::InputKind kind);
 
-/// Returns the prior standard deviation of each variable of an event's state, in its units. For a switching
-/// time it is the uncertainty of that time.
+/// Returns the prior standard deviation of each variable of an event's state, in the units of the search
+/// (fit/states.hpp). For a switching time it is the uncertainty of that time.
 std::vector<double> own_priors(const event::FitEvent& event);
 /// Clamps the switching times of an event's state to within their uncertainties.
 void keep_in_range(const event::FitEvent& event, Eigen::VectorXd& state);
@@ -84,8 +86,9 @@ Inference infer(const sim::plant::PlantUnderTest& tested, const noise::WhitenedE
                 const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
                 int steps = kInferenceSteps);
 
-/// Two inferences: at the prior intensity of the inputs' random walk, and at the most probable intensity. The
-/// second starts from the first. Its intensity is small if the records require no input.
+/// Two inferences: at the prior intensity of the inputs' random walk (Inference::intensity = 1), and at the
+/// most probable intensity. The second starts from the first. Its intensity is small if the records require
+/// no input.
 struct SmoothInference {
   Inference prior, smooth;  ///< at the prior intensity, and at the most probable one
 };
@@ -95,9 +98,9 @@ struct SmoothInference {
 SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& events,
                              const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
                              const fit::Fit* from);
-/// Linearises about `plant` without any step, at the given event states. The requested inputs are zero, and
-/// their Jacobians are computed. `plant` is the tested plant, or has a block added or replaced. Throws
-/// InputError if it cannot be simulated.
+/// Linearises about `plant` without any step, at the given event states. The requested inputs, which
+/// are added to Tm and Efd, are zero unless `states` contains them; their Jacobians are computed. `plant` is
+/// the tested plant, or has a block added or replaced. Throws InputError if it cannot be simulated.
 Inference linear_about(const sim::plant::Plant& plant, const sim::plant::PlantUnderTest& tested,
                        const noise::WhitenedEvents& events, const std::vector<fit::FreeParameter>& free,
                        const std::vector<event::EventState>& states, Inputs inputs, int threads);

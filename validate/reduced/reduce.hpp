@@ -53,8 +53,8 @@ class Reduction {
   [[nodiscard]] const Eigen::VectorXd& series(event::InputKind kind) const {
     return kind == event::InputKind::torque ? torque_ : field_;
   }
-  /// Returns the events' states that minimise the cost, in their units. `plant`: changes of the plant's
-  /// parameters; `series`: time series of the input `kind`, the only free input.
+  /// Returns the events' states that minimise the cost, in the units of the search. `plant`: changes of the
+  /// plant's parameters; `series`: time series of the input `kind`, the only free input.
   [[nodiscard]] std::vector<Eigen::VectorXd> states_at(const noise::WhitenedEvents& events,
                                                        event::InputKind kind, const Eigen::VectorXd& plant,
                                                        const Eigen::VectorXd& series) const;

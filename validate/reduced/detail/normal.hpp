@@ -6,7 +6,8 @@
 
 namespace swingbank::validate::reduced::detail {
 
-/// Values of all free variables: plant parameters on their axes; state and inputs of each event.
+/// Values of all free variables: plant parameters in the search's coordinate z (fit/axis.hpp); state, in the
+/// units of the search (fit/states.hpp), and inputs [pu] of each event.
 struct Point {
   Eigen::VectorXd z;
   std::vector<Eigen::VectorXd> states, torques, fields;
