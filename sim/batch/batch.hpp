@@ -34,7 +34,7 @@ struct Job {
   /// its ownership.
   std::shared_ptr<const grid::Grid> grid = {};
   network::Event event;  ///< faults, switchings and steps of the simulation
-  /// Parameter values of one block (an effect of a plant).
+  /// Parameter values of one block: of one model component of a plant (machine, exciter, governor ...).
   struct BlockValues {
     int plant, block;            ///< index of the plant; number of the block (sim/plant/parameter_id.hpp)
     std::vector<double> values;  ///< in the order of the effect's parameters
@@ -60,7 +60,8 @@ class Batch {
   void run(const std::function<bool(Job&)>& next,
            const std::function<void(const Job&, const Trajectory&)>& done);
   /// Returns the description of the kernel, which is part of a dataset's config hash:
-  /// "dp54 lanes=8 isa=avx512 tol=1e-06 angles=moved", "dp54 lanes=16 float isa=...".
+  /// "dp54 lanes=8 isa=avx512 tol=1e-06 angles=moved", "dp54 lanes=16 float isa=...". `angles=moved`:
+  /// synchronism is judged by the change of the angles since the start (decision 39).
   [[nodiscard]] std::string variant() const;
 
  private:
