@@ -1,4 +1,4 @@
-// Notebook views: chips with the errors of each channel, and plots of the measured and modelled samples.
+// Notebook views: labels with the RMS error of each channel, and plots of the measured and modelled samples.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 """Swingbank: validation of power-plant models against recorded disturbances.
 
     plant = swingbank.Plant("plant.toml")
-    playback = plant.play("event.csv")      # in a notebook: chips and curves
+    playback = plant.play("event.csv")      # in a notebook: RMS error of each channel, and curves
     plant.diagnose(["event1.csv", "event2.csv"]).sentence
 
 The module contains the compiled library, without LibTorch and MPI. Arrays are numpy arrays; the docstrings state
