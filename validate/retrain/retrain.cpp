@@ -200,7 +200,8 @@ std::string terminal_report(const Retrained& r) {
                            figure(e.reduced_chi2[0]), figure(e.reduced_chi2[1])});
   return r.sentence +
          "\n\nEstimates on held-out events; errors in standard deviations of the drawn values:\n" +
-         report::padded(t, 1) + "\nP and Q with each network's estimates from the fitted events:\n" +
+         report::padded(t, 1) +
+         "\nP and Q with each network's estimates, averaged over the fitted events:\n" +
          report::padded(events, 1);
 }
 

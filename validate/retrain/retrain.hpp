@@ -62,9 +62,9 @@ struct RetrainedEvent {
   std::string record;
   bool seen = true;                    ///< false: held out
   double parameter_error[2] = {0, 0};  ///< RMS over the shared parameters [deviation]
-  /// Reduced chi-square, and RMS error of P and Q [MW, Mvar], of the model with the estimates from the fitted
-  /// events. Switching times and initial state of the event are fitted. Infinite if that plant cannot be
-  /// simulated.
+  /// Reduced chi-square, and RMS error of P and Q [MW, Mvar], of the model with a network's estimates,
+  /// averaged over the fitted events. Switching times and initial state of the event are fitted. Infinite if
+  /// that plant cannot be simulated.
   double reduced_chi2[2] = {0, 0}, rms[2] = {0, 0};
 };
 struct Retrained {
