@@ -366,8 +366,8 @@ struct Effect {
 
 /// Returns the name of the effect's slot, or "converter" if the effect is a converter.
 std::string_view kind_name(const Effect& effect);
-/// Returns why a control cannot belong to a source ("governor belongs to a synchronous machine, ..."), empty
-/// if it can.
+/// Returns why a control is incompatible with a plant's machine or converter ("governor belongs to a
+/// synchronous machine, ..."); empty if it is compatible.
 std::string slot_conflict(const Effect& source, const Effect& control);
 
 // ---- used by the generated registry only -------------------------------------------------------------
