@@ -49,7 +49,7 @@ struct Bench {
                          .scale = std::abs(sim::plant::parameter_value(tested.plant, f.id))});
       const double middle = processor_seconds();
       const int runs = static_cast<int>(along.size() + sim::kSensitivities - 1) / sim::kSensitivities;
-      const event::Playing how{.lenient = lenient, .linear_sensitivities = lenient};
+      const event::Playing how{.lenient = lenient};
       cost.sensitivity_steps += static_cast<double>(event::play(tested, e, {}, along, how).steps) /
                                 e.record.samples() / (lenient ? 1 : runs);
       cost.sensitivity_seconds += processor_seconds() - middle;
@@ -105,8 +105,7 @@ double objective_seconds(const sim::plant::PlantUnderTest& tested, const noise::
         std::ranges::move(fit::state_parameters(event), std::back_inserter(along));
       }
       const playin::Response r =
-          event::play(tested, event, {}, along,
-                      {.lenient = true, .allowance = &allowances[e], .linear_sensitivities = true});
+          event::play(tested, event, {}, along, {.lenient = true, .allowance = &allowances[e]});
       noise::RowMatrix columns(event.values(), static_cast<Eigen::Index>(along.size()) + 1);
       for (std::size_t d = 0; d < along.size(); ++d)
         columns.col(static_cast<Eigen::Index>(d)) = event.collected(r.sensitivities[d].value, false);
