@@ -81,7 +81,7 @@ Part network_part(const train::loop::Preset& p, const std::string& network, cons
                   const Rates& rates) {
   const train::loop::TrainingRecipe& t = p.training.at(network);
   const train::loop::Judging& judged = p.judging.at(network);
-  const NetworkRate& cost = rate_of(rates, t.kind);
+  const NetworkRate& cost = rate_of(rates, t.steps_from.empty() ? t.kind : "refined");
   const auto row = [](const NetworkRate& of, double noise) { return noise > 0 ? of.noisy_row : of.row; };
   Part part;
   part.what = network;

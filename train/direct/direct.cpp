@@ -21,7 +21,7 @@ namespace store = mpi::store;
 constexpr double kWeights = 1e-4;       ///< noise level that determines channel weights without noise
 constexpr double kNoPrior = 1e3;        ///< standard deviation of a prior without influence [box widths]
 constexpr std::size_t kRowsRead = 512;  ///< rows read at once
-enum class Method { closed_form, refined, curve_fit, floor };  ///< in order of kMethods
+enum class Method { closed_form, refined, curve_fit, floor, from_start };  ///< in order of kMethods
 
 /// Reads rows of the dataset and estimates their parameters.
 class Rows {
@@ -31,7 +31,7 @@ class Rows {
     Problems problems;
     const std::string where = (d.path / "dataset.json").string();
     effect_ = sim::library::compiled().find(d.machine_model);
-    if (!effect_ || !effect_->closed_form)
+    if (!effect_ || (!effect_->closed_form && method != Method::from_start))
       problems.add("no closed form for " + d.machine_model, where,
                    "the closed-form estimator does not support this machine model",
                    "leave closed-form and refined out of the preset's networks");
@@ -78,11 +78,15 @@ class Rows {
     }
   }
 
-  /// Estimates one row's parameters, clamped to the box. For the floor see direct.hpp.
+  /// Estimates one row's parameters, clamped to the box. `out`: with from_start, initially the start. For the
+  /// floor see direct.hpp.
   void estimate(store::RowBlock& block, std::size_t row, std::uint64_t number, double* out) const {
     if (method_ == Method::floor) return floor(block, row, out);
     if (!noise_.none()) noise_.add(number, block.records.data() + row * block.channels * block.samples);
-    const std::vector<double> p = found(recording(block, row), known_.at(block.generator[row]));
+    std::vector<double> start = known_.at(block.generator[row]);
+    if (method_ == Method::from_start)
+      for (std::size_t k = 0; k < index_.size(); ++k) start[static_cast<std::size_t>(index_[k])] = out[k];
+    const std::vector<double> p = found(recording(block, row), start);
     for (std::size_t k = 0; k < index_.size(); ++k) {
       const double low = dataset_.parameter_low[k], high = dataset_.parameter_high[k];
       const double value = p[static_cast<std::size_t>(index_[k])];
@@ -93,6 +97,7 @@ class Rows {
  private:
   [[nodiscard]] std::vector<double> found(const sim::Recording& r, const std::vector<double>& known) const {
     if (method_ == Method::curve_fit) return fitted(r, known);
+    if (method_ == Method::from_start) return sim::direct::most_probable(*effect_, r, known, unknown_).p;
     auto all = effect_->closed_form(noise_.none() ? r : sim::direct::smoothed(r), known.data());
     if (all.empty()) all.push_back(known);
     if (method_ == Method::closed_form) return all.front();
@@ -180,21 +185,10 @@ class Rows {
   std::vector<sim::direct::ParameterPrior> unknown_;
 };
 
-}  // namespace
-
-bool is_method(std::string_view name) { return std::ranges::find(kMethods, name) != kMethods.end(); }
-
-std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint64_t> rows,
-                             std::string_view method, const data::NoiseRecipe& noise,
-                             const std::function<void(std::size_t)>& report) {
-  const auto which = static_cast<Method>(std::ranges::find(kMethods, method) - kMethods.begin());
-  if (which == Method::floor && noise.level == 0)
-    throw InputError({"method floor without noise", "--network floor",
-                      "without noise there is no Cramér-Rao bound",
-                      "give --noise, or choose another method"});
-  const Rows reader(d, which, noise);
+/// Estimates the rows in parallel, and writes the estimates to `out`.
+void for_each_row(const store::Dataset& d, std::span<const std::uint64_t> rows, const Rows& reader,
+                  std::vector<double>& out, const std::function<void(std::size_t)>& report) {
   const std::size_t p = d.parameter_names.size();
-  std::vector<double> out(rows.size() * p);
   std::size_t done = 0;
   for (const store::ShardInfo& shard : d.shards) {
     const std::uint64_t end = shard.first_row + shard.rows;
@@ -215,6 +209,30 @@ std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint6
       if (report) report(done);
     }
   }
+}
+
+}  // namespace
+
+bool is_method(std::string_view name) { return std::ranges::find(kMethods, name) != kMethods.end(); }
+
+std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint64_t> rows,
+                             std::string_view method, const data::NoiseRecipe& noise,
+                             const std::function<void(std::size_t)>& report) {
+  const auto which = static_cast<Method>(std::ranges::find(kMethods, method) - kMethods.begin());
+  if (which == Method::floor && noise.level == 0)
+    throw InputError({"method floor without noise", "--network floor",
+                      "without noise there is no Cramér-Rao bound",
+                      "give --noise, or choose another method"});
+  std::vector<double> out(rows.size() * d.parameter_names.size());
+  for_each_row(d, rows, Rows(d, which, noise), out, report);
+  return out;
+}
+
+std::vector<double> estimate_from(const store::Dataset& d, std::span<const std::uint64_t> rows,
+                                  std::span<const double> starts, const data::NoiseRecipe& noise,
+                                  const std::function<void(std::size_t)>& report) {
+  std::vector<double> out(starts.begin(), starts.end());
+  for_each_row(d, rows, Rows(d, Method::from_start, noise), out, report);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "base/config.hpp"
 #include "base/describe.hpp"
@@ -29,10 +30,38 @@ std::vector<std::string> network_names() {
 /// preset's value (in a network's table).
 enum class Missing { refused, standard, inherited };
 
+/// A table, and the table of the same name in the preset that its preset copies, if it copies one. A key that
+/// the table lacks is read from the copied one.
+class Table {
+ public:
+  Table(const Config& c, std::string at, std::optional<std::string> copied)
+      : c_(c), at_(std::move(at)), copied_(std::move(copied)) {}
+  [[nodiscard]] Table of(const std::string& name) const {
+    return {c_, at_ + "." + name, unknown() ? copied_ : std::optional(*copied_ + "." + name)};
+  }
+  /// Whether a key must be read: it is present, or no other table can have it.
+  [[nodiscard]] bool reads(const std::string& key) const { return !copied_ || c_.has(path(key)); }
+  /// Returns the path of a key.
+  [[nodiscard]] std::string path(const std::string& key) const {
+    const std::string own = at_ + "." + key;
+    if (unknown() || c_.has(own)) return own;
+    const std::string other = *copied_ + "." + key;
+    return c_.has(other) ? other : own;
+  }
+
+ private:
+  /// Whether there is no other table: none is copied, or its name is empty (as while a schema is derived).
+  [[nodiscard]] bool unknown() const { return !copied_ || copied_->empty(); }
+
+  const Config& c_;
+  std::string at_;
+  std::optional<std::string> copied_;
+};
+
 /// Reader of the keys of one table.
 class Keys {
  public:
-  Keys(Config& c, std::string at, Missing missing) : c_(c), at_(std::move(at)), missing_(missing) {}
+  Keys(Config& c, Table at, Missing missing) : c_(c), at_(std::move(at)), missing_(missing) {}
   void whole(const char* key, double low, std::size_t& value, const char* meaning) {
     auto read = static_cast<std::int64_t>(value);
     one(key, {low, 1e12, "", meaning}, read);
@@ -41,7 +70,7 @@ class Keys {
   void number(const char* key, const Range& range, double& value) { one(key, range, value); }
   void choice(const char* key, const std::vector<std::string>& choices, std::string& value,
               const char* meaning) {
-    if (missing_ != Missing::inherited || c_.has(name(key)))
+    if (missing_ == Missing::inherited ? c_.has(name(key)) : at_.reads(key))
       value = c_.choice(name(key), choices, Range{.meaning = meaning});
   }
   void flag(const char* key, bool& value, const char* meaning) { one(key, {.meaning = meaning}, value); }
@@ -51,16 +80,16 @@ class Keys {
   void numbers(const char* key, const Range& range, std::vector<double>& value) { one(key, range, value); }
 
  private:
-  [[nodiscard]] std::string name(const char* key) const { return at_ + "." + key; }
+  [[nodiscard]] std::string name(const char* key) const { return at_.path(key); }
   template <class T>
   void one(const char* key, const Range& range, T& value) {
     if (missing_ == Missing::standard)
       value = c_.optional<T>(name(key), value, range);
-    else if (missing_ == Missing::refused || c_.has(name(key)))
+    else if (missing_ == Missing::refused ? at_.reads(key) : c_.has(name(key)))
       value = c_.require<T>(name(key), range);
   }
   Config& c_;
-  std::string at_;
+  Table at_;
   Missing missing_;
 };
 
@@ -69,7 +98,7 @@ class Keys {
 Missing default_of(bool complete) { return complete ? Missing::standard : Missing::inherited; }
 Missing required_of(bool complete) { return complete ? Missing::refused : Missing::inherited; }
 
-void read_training(Config& c, const std::string& at, bool complete, TrainingRecipe& t) {
+void read_training(Config& c, const Table& at, bool complete, TrainingRecipe& t) {
   Keys k(c, at, required_of(complete));
   k.whole("epochs", 1, t.epochs, "epochs of training");
   k.whole("batch", 1, t.batch, "rows per training step");
@@ -92,13 +121,13 @@ void read_training(Config& c, const std::string& at, bool complete, TrainingReci
 
 /// Reads the noise levels of the training. A network trained at many levels needs the level as an input; only
 /// the forms "physics" and "swing" provide it.
-void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, NetworkInput& input) {
-  if (const std::string name = at + ".training_noise"; c.has(name)) {
+void read_noise_levels(Config& c, const Table& at, TrainingRecipe& t, NetworkInput& input) {
+  if (const std::string name = at.path("training_noise"); c.has(name)) {
     const auto range = c.require<std::vector<double>>(
         name, {1e-6, kNoiseLevels.high, "",
                "[lowest, highest] level of noise, drawn for every row in every epoch"});
     const auto zero =
-        c.require<double>(at + ".training_noise_zero", {0.0, 1.0, "", "share of rows without noise"});
+        c.require<double>(at.path("training_noise_zero"), {0.0, 1.0, "", "share of rows without noise"});
     if (range.size() != 2 || range[0] >= range[1])
       c.problem(name, "invalid range of noise levels",
                 "it must be [lowest, highest] with 0 < lowest < highest", "give for example [0.0001, 0.005]");
@@ -108,16 +137,16 @@ void read_noise_levels(Config& c, const std::string& at, TrainingRecipe& t, Netw
   input.recipe.shows_level = t.noise_levels.has_value();
   if (t.noise_levels && input.recipe.form != data::InputForm::physics &&
       input.recipe.form != data::InputForm::swing)
-    c.problem(at + ".form", "training_noise with this form",
+    c.problem(at.path("form"), "training_noise with this form",
               "the noise level is an input, which only the forms physics and swing have",
               "choose one of these, or leave training_noise out");
   if ((t.kind == "swing") != (input.recipe.form == data::InputForm::swing))
-    c.problem(at + ".form", fmt::format("network {} with the wrong form", t.kind),
+    c.problem(at.path("form"), fmt::format("network {} with the wrong form", t.kind),
               "the network swing requires the form swing, and no other network accepts that form",
               "set form = \"swing\" for the network swing only");
 }
 
-void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i) {
+void read_input(Config& c, const Table& at, bool complete, NetworkInput& i) {
   Keys k(c, at, required_of(complete));
   k.names("channels", i.recipe.channels, "channels of the dataset that the network reads");
   k.number("start_s", {0.0, 1e6, "s", "start of the window"}, i.recipe.start_s);
@@ -132,13 +161,13 @@ void read_input(Config& c, const std::string& at, bool complete, NetworkInput& i
   extra.flag("seconds_as_steps", i.recipe.seconds_as_steps,
              "the components of one second form one time step of the input");
   if (i.recipe.seconds_as_steps && i.pca_components == 0)
-    c.problem(at + ".seconds_as_steps", "seconds_as_steps without pca_components",
+    c.problem(at.path("seconds_as_steps"), "seconds_as_steps without pca_components",
               "each step consists of the principal components of one second",
               "give pca_components, or leave it out");
   extra.flag("regressions", i.recipe.regressions,
              "also read the regressions of each signal on pairs of others");
   if (i.recipe.regressions && i.recipe.form != data::InputForm::physics)
-    c.problem(at + ".regressions", "regressions with the wrong form",
+    c.problem(at.path("regressions"), "regressions with the wrong form",
               "they are computed from the signals of the form physics",
               "choose form = \"physics\", or leave regressions out");
 }
@@ -150,14 +179,28 @@ void train_as_judged(TrainingRecipe& t) {
   t.posterior_epochs = t.set_aside = 0;
 }
 
-void refuse_unknown_posteriors(Config& c, const std::string& at, const TrainingRecipe& t) {
+void refuse_unknown_posteriors(Config& c, const Table& at, const TrainingRecipe& t) {
   if (t.corrects.empty() || (!t.noise_levels && t.posterior_epochs == 0)) return;
-  c.problem(at + ".corrects", "training_noise or posterior_epochs for a network that corrects estimates",
+  c.problem(at.path("corrects"), "training_noise or posterior_epochs for a network that corrects estimates",
             "the estimates are computed once, from records with one noise level",
             "leave training_noise and posterior_epochs out");
 }
 
-void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
+/// The likelihood needs the level of the noise, and the network a file of its own.
+void refuse_steps_without_noise(Config& c, const Table& at, const Preset& p, const std::string& network) {
+  const std::string& from = p.training.at(network).steps_from;
+  if (from.empty()) return;
+  const auto& levels = p.judging.at(network).noise;
+  if (std::ranges::find(levels, 0.0) != levels.end())
+    c.problem(at.path("noise"), "steps_from without noise", "the likelihood needs the level of the noise",
+              "give levels above 0");
+  if (p.training.contains(from) &&
+      (!p.training.at(from).corrects.empty() || !p.training.at(from).steps_from.empty()))
+    c.problem(at.path("steps_from"), fmt::format("{} has no network file", from),
+              "it corrects estimates or is not trained", "choose a network that reads series alone");
+}
+
+void read_judging(Config& c, const Table& at, bool complete, Judging& j) {
   Keys(c, at, required_of(complete)).numbers("noise", kNoiseLevels, j.noise);
   Keys extra(c, at, default_of(complete));
   extra.whole("test_rows", 1, j.test_rows, "approximate number of test rows to judge; missing: all");
@@ -166,20 +209,37 @@ void read_judging(Config& c, const std::string& at, bool complete, Judging& j) {
                 j.shares);
 }
 
+/// Returns the table of the preset that a preset copies, "preset.quick"; none if it copies none.
+std::optional<std::string> copied_preset(Config& c, const std::string& name) {
+  const std::string key = "preset." + name + ".like";
+  if (!c.has(key)) return std::nullopt;
+  const auto other = c.require<std::string>(
+      key, {.meaning = "preset whose keys and tables this one has, except those that it gives itself"});
+  if (other.empty() || !c.is_table("preset." + other) || c.has("preset." + other + ".like"))
+    c.problem(key, fmt::format("no preset called '{}' that copies none itself", other),
+              "a preset can copy only one that is complete", "name such a preset, or leave like out");
+  return other.empty() ? "" : "preset." + other;
+}
+
 /// Reads a preset. A table in it with the name of a network overrides settings for that network only.
 Preset read_preset(Config& c, const std::string& name) {
-  const std::string at = "preset." + name;
+  const Table at(c, "preset." + name, copied_preset(c, name));
   Preset p;
   p.name = name;
-  p.draws =
-      static_cast<std::uint64_t>(c.require<std::int64_t>(at + ".draws", {1, 1e12, "", "events to simulate"}));
-  const auto known = network_names();
-  p.networks = c.table_names(
-      at + ".networks",
-      {.meaning = fmt::format("networks, copies of networks, or methods: {}", fmt::join(known, ", "))});
+  const auto events = [&](const char* key, double low, const char* meaning, std::uint64_t& value) {
+    if (at.reads(key))
+      value = static_cast<std::uint64_t>(c.require<std::int64_t>(at.path(key), {low, 1e12, "", meaning}));
+  };
+  events("draws", 1, "events to simulate", p.draws);
   if (c.has("training_dataset"))
-    p.training_draws = static_cast<std::uint64_t>(c.require<std::int64_t>(
-        at + ".training_draws", {0, 1e12, "", "events to simulate of training_dataset"}));
+    events("training_draws", 0, "events to simulate of training_dataset", p.training_draws);
+  const auto known = network_names();
+  if (at.reads("networks"))
+    p.networks = c.table_names(
+        at.path("networks"),
+        {.meaning = fmt::format("networks, copies of networks, or methods: {}", fmt::join(known, ", "))});
+  else if (c.name().empty())  // a schema is derived: tables of networks do not depend on the list
+    p.networks = {kAnyName};
   NetworkInput input;
   TrainingRecipe training;
   read_input(c, at, true, input);
@@ -187,22 +247,33 @@ Preset read_preset(Config& c, const std::string& name) {
   Judging judging;
   read_judging(c, at, true, judging);
   for (const auto& network : p.networks) {
-    const std::string own = at + "." + network;
-    const std::string like = c.optional<std::string>(
-        own + ".like", "", {.meaning = "earlier network of the preset that it copies"});
+    const Table own = at.of(network);
+    const std::string steps_from = c.optional<std::string>(
+        own.path("steps_from"), "",
+        {.meaning =
+             "earlier network of the preset from whose estimates the likelihood search starts; not with "
+             "like"});
+    const std::string copy = steps_from.empty() ? "like" : "steps_from";
+    const std::string like =
+        steps_from.empty()
+            ? c.optional<std::string>(own.path("like"), "",
+                                      {.meaning = "earlier network of the preset that it copies"})
+            : steps_from;
     if (!like.empty() && !p.training.contains(like))
-      c.problem(own + ".like", fmt::format("no network called '{}' before '{}'", like, network),
-                "`like` refers to an earlier entry of the preset's networks", "list that network first");
+      c.problem(own.path(copy), fmt::format("no network called '{}' before '{}'", like, network),
+                fmt::format("`{}` refers to an earlier entry of the preset's networks", copy),
+                "list that network first");
     const bool copied = p.training.contains(like);
     p.input[network] = copied ? p.input[like] : input;
     p.judging[network] = copied ? p.judging[like] : judging;
     p.training[network] = copied ? p.training[like] : training;
     if (!copied) p.training[network].kind = network;
+    p.training[network].steps_from = steps_from;
     const std::string& kind = p.training[network].kind;
     if (std::find(known.begin(), known.end(), kind) == known.end())
-      c.problem(at + ".networks", fmt::format("no network called '{}'", kind), "there is no such network",
+      c.problem(at.path("networks"), fmt::format("no network called '{}'", kind), "there is no such network",
                 fmt::format("choose among {}", fmt::join(known, ", ")));
-    p.training[network].corrects = c.choice(own + ".corrects", {"", "closed-form", "refined"}, "",
+    p.training[network].corrects = c.choice(own.path("corrects"), {"", "closed-form", "refined"}, "",
                                             {.meaning = "method whose estimates the network corrects"});
     if (!p.training[network].corrects.empty()) train_as_judged(p.training[network]);
     read_input(c, own, false, p.input[network]);
@@ -210,8 +281,9 @@ Preset read_preset(Config& c, const std::string& name) {
     read_judging(c, own, false, p.judging[network]);
     read_noise_levels(c, own, p.training[network], p.input[network]);
     refuse_unknown_posteriors(c, own, p.training[network]);
+    refuse_steps_without_noise(c, own, p, network);
     if (p.training[network].training_rows && p.training_draws == 0)
-      c.problem(at + "." + network + ".training_rows", "training_rows without training_dataset",
+      c.problem(own.path("training_rows"), "training_rows without training_dataset",
                 "the experiment has no training_dataset, or the preset no training_draws", "give both");
   }
   return p;
@@ -242,7 +314,7 @@ Experiment read_experiment(Config& c) {
     e.presets[name] = read_preset(c, name);
     for (const auto& [network, training] : e.presets[name].training)
       if (e.across && !training.training_rows)
-        c.problem("preset." + name + ".training_rows", fmt::format("no training rows for {}", network),
+        c.problem("preset." + name, fmt::format("no training rows for {}", network),
                   "the split across-datasets trains on training_dataset only",
                   "add training_rows = true to the preset");
   }

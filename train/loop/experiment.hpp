@@ -29,6 +29,9 @@ struct TrainingRecipe {
   bool training_rows = false;  ///< whether to train on the training dataset's rows too
   std::string kind = {};       ///< file name in train/networks; usually the network's name
   std::string corrects = {};   ///< method of train/direct whose estimates the network corrects; empty: none
+  /// Trained network whose estimates the likelihood search starts from; empty: none. The entry itself is then
+  /// not trained.
+  std::string steps_from = {};
   /// Distribution of the noise levels of training rows. If present, every row has a random level in every
   /// epoch, and the level is an input; one network then serves all levels. If absent, training rows have the
   /// noise of the test rows.

@@ -105,6 +105,33 @@ std::string scored(const loop::Score& s, double seconds) {
                      loop::duration(seconds));
 }
 
+/// Returns the network's estimates in raw units, clamped to the sampling box, which contains every true
+/// value.
+std::vector<double> estimates(const Trained& trained, const PreparedRun& run, const Guesses& known,
+                              std::span<const std::uint64_t> rows) {
+  const auto out = loop::predict(*trained.network, run.stream, trained.features, rows, known.scaled);
+  const data::TargetScale& scale = run.scale;
+  const mpi::store::Dataset& d = run.stream.dataset();
+  std::vector<double> raw(out.size());
+  const std::size_t p = scale.mean.size();
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double value = known.none() ? scale.raw(out[i], i % p)
+                                      : known.raw[rows[i / p] * p + i % p] + out[i] * scale.unit[i % p];
+    raw[i] = std::clamp(value, d.parameter_low[i % p], d.parameter_high[i % p]);
+  }
+  return raw;
+}
+
+/// Returns the network of steps_from, and trains it if its result does not exist; null if this was stopped.
+std::unique_ptr<Trained> network_of_start(const PreparedRun& run) {
+  RunRequest r = run.request;
+  r.network = run.recipe.steps_from;
+  const std::size_t rows = r.experiment.judging(r.preset, r.network).test_rows;
+  r.test_rows = rows > 0 ? std::optional(rows) : std::nullopt;
+  if (train::run::run(run.stream, r) == RunOutcome::stopped) return nullptr;
+  return SavedNetwork::load(network_file(r.out / (training_name(r) + ".json"))).release();
+}
+
 /// Runs a method without training. It writes no checkpoints, because it takes minutes at most.
 RunOutcome run_direct(const PreparedRun& run, const std::filesystem::path& result) {
   const RunRequest& r = run.request;
@@ -112,12 +139,19 @@ RunOutcome run_direct(const PreparedRun& run, const std::filesystem::path& resul
   if (r.shuffle_labels)
     throw InputError({"shuffled labels for " + r.network, "--shuffle-labels", "this method is not trained",
                       "leave it out, or choose a network"});
+  const bool starts = !run.recipe.steps_from.empty();
+  const std::unique_ptr<Trained> network = starts ? network_of_start(run) : nullptr;
+  if (starts && !network) return RunOutcome::stopped;
   loop::TrainingProgress progress(run_name(r), rows.size(), r.quiet);
   progress.line(fmt::format("{} test rows; the method is not trained", rows.size()));
   const auto begin = std::chrono::steady_clock::now();
   const std::clock_t processor = std::clock();
-  const auto found = direct::estimate(run.stream.dataset(), rows, r.network, run.stream.noise(),
-                                      [&](std::size_t done) { progress.update(done, "rows estimated"); });
+  const auto estimated = [&](std::size_t done) { progress.update(done, "rows estimated"); };
+  const mpi::store::Dataset& d = run.stream.dataset();
+  const data::NoiseRecipe& noise = run.stream.noise();
+  const auto found =
+      starts ? direct::estimate_from(d, rows, estimates(*network, run, {}, rows), noise, estimated)
+             : direct::estimate(d, rows, r.network, noise, estimated);
   loop::LoopReport report;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
@@ -209,9 +243,9 @@ class NetworkRun {
 
   void judge_to(const std::filesystem::path& result, const Trained& trained) {
     const data::RowSplit& split = run_.split;
-    const std::vector<double> found = estimates(trained, split.test);
+    const std::vector<double> found = estimates(trained, run_, known_, split.test);
     const loop::Score score = judge(found, run_, split.test);
-    const double seen = judge(estimates(trained, split.validation), run_, split.validation).mse;
+    const double seen = judge(estimates(trained, run_, known_, split.validation), run_, split.validation).mse;
     const bool head = trained.posterior.head != nullptr;
     const json believed = head ? judge_posterior(run_, trained) : json();
     const json several = several_json(run_.stream.labels(), split.test, found,
@@ -285,21 +319,6 @@ class NetworkRun {
                     ranks_.size() > 1 ? fmt::format("{} ranks of {}", ranks_.size(), runtime.sentence())
                                       : runtime.sentence()));
   }
-  /// Returns the estimates in raw units, clamped to the sampling box, which contains every true value.
-  [[nodiscard]] std::vector<double> estimates(const Trained& trained, std::span<const std::uint64_t> rows) {
-    const auto out = loop::predict(*trained.network, run_.stream, trained.features, rows, known_.scaled);
-    const data::TargetScale& scale = run_.scale;
-    const mpi::store::Dataset& d = run_.stream.dataset();
-    std::vector<double> raw(out.size());
-    const std::size_t p = scale.mean.size();
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      const double value = known_.none() ? scale.raw(out[i], i % p)
-                                         : known_.raw[rows[i / p] * p + i % p] + out[i] * scale.unit[i % p];
-      raw[i] = std::clamp(value, d.parameter_low[i % p], d.parameter_high[i % p]);
-    }
-    return raw;
-  }
-
   const PreparedRun& run_;
   const mpi::items::Ranks& ranks_;
   const Guesses known_;
@@ -336,7 +355,7 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
   bool needed = false;
   ranks.agree(run_name(r), [&] {
     prepared.emplace(prepare(stream, r));
-    if (ranks.size() > 1 && direct::is_method(r.network))
+    if (ranks.size() > 1 && !is_trained(r))
       throw InputError({fmt::format("{} ranks for {}", ranks.size(), r.network), "mpirun",
                         "this method is not trained, and runs in one process", "start it without mpirun"});
     const std::size_t batch = prepared->recipe.batch;
@@ -347,7 +366,7 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
     if (ranks.rank() == 0) needed = begin(*prepared, result, lock);
   });
   if (ranks.from_first(needed ? 1 : 0) == 0) return RunOutcome::already_done;
-  if (direct::is_method(r.network)) return run_direct(*prepared, result);
+  if (!is_trained(r)) return run_direct(*prepared, result);
   NetworkRun network(*prepared, ranks);
   const std::optional<Trained> trained = network.train();
   if (!trained) return RunOutcome::stopped;

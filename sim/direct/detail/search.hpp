@@ -1,5 +1,5 @@
 #pragma once
-// Cost function and solver options of this module's searches.
+// Cost function and solver options of the search without noise.
 #include <ceres/ceres.h>
 
 #include <algorithm>

@@ -87,6 +87,37 @@ TEST(Experiment, CorrectingNetworksTrainAtTheirTestLevel) {
                InputError);
 }
 
+TEST(Experiment, PresetsCopyACompletePreset) {
+  const std::string night =
+      "[preset.night]\nlike = \"quick\"\ndraws = 99\nepochs = 70\n[preset.night.mlp]\nbatch = 9\n";
+  const Experiment e = experiment("", "", kPhysicsAtManyLevels + night);
+  EXPECT_EQ(e.preset("night").draws, 99u);
+  EXPECT_EQ(e.preset("night").networks, e.preset("quick").networks);
+  EXPECT_EQ(e.training("night", "gru").epochs, 70u);
+  EXPECT_EQ(e.training("night", "gru").batch, e.training("quick", "gru").batch);
+  EXPECT_EQ(e.training("night", "mlp").batch, 9u);
+  EXPECT_TRUE(e.training("night", "mlp").noise_levels);
+  EXPECT_THROW(experiment("", "", "[preset.night]\nlike = \"slow\"\n"), InputError);
+  EXPECT_THROW(experiment("", "", night + "[preset.week]\nlike = \"night\"\n"), InputError);
+}
+
+TEST(Experiment, StepsStartFromAnEarlierNetworkOfNoisyRecords) {
+  const std::string networks = "networks = [\"mlp\", \"steps\"]";
+  const std::string steps = "[preset.quick.steps]\nsteps_from = \"mlp\"\nnoise = [0.001]\n";
+  const Experiment e = experiment("", networks, kPhysicsAtManyLevels + steps);
+  EXPECT_EQ(e.training("quick", "steps").steps_from, "mlp");
+  EXPECT_EQ(e.training("quick", "steps").kind, "mlp");
+  EXPECT_TRUE(e.training("quick", "steps").noise_levels);
+  EXPECT_TRUE(e.training("quick", "mlp").steps_from.empty());
+  EXPECT_THROW(
+      experiment("", networks, kPhysicsAtManyLevels + "[preset.quick.steps]\nsteps_from = \"mlp\"\n"),
+      InputError);  // records without noise
+  EXPECT_THROW(experiment("", networks, "[preset.quick.steps]\nsteps_from = \"gru\"\nnoise = [0.001]\n"),
+               InputError);  // no such network before
+  EXPECT_THROW(experiment("", networks, "[preset.quick.mlp]\ncorrects = \"closed-form\"\n" + steps),
+               InputError);
+}
+
 TEST(Experiment, RegressionsAndSecondsAsStepsRequireTheirInputForms) {
   const Experiment e = experiment("", "",
                                   "[preset.quick.mlp]\nform = \"physics\"\nregressions = true\n"

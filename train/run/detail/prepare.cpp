@@ -19,8 +19,8 @@ void thin(std::vector<std::uint64_t>& rows, std::size_t wanted) {
 
 /// Throws InputError if a method needs complete records but the dataset is not on disk.
 void require_records(const data::ShardStream& stream, const RunRequest& r) {
-  const bool reads =
-      direct::is_method(r.network) || !r.experiment.training(r.preset, r.network).corrects.empty();
+  const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
+  const bool reads = !is_trained(r) || !recipe.corrects.empty();
   if (reads && stream.from_memory())
     throw InputError(
         {"network " + r.network, "--simulate",
@@ -40,6 +40,10 @@ data::RowSplit split_of(const data::Labels& labels, const RunRequest& r) {
 }
 
 }  // namespace
+
+bool is_trained(const RunRequest& r) {
+  return !direct::is_method(r.network) && r.experiment.training(r.preset, r.network).steps_from.empty();
+}
 
 PreparedRun prepare(const data::ShardStream& stream, const RunRequest& r) {
   require_records(stream, r);

@@ -17,6 +17,10 @@ struct PreparedRun {
   data::TargetScale scale;  ///< scale of the targets
 };
 
+/// Whether the request trains a network: it is neither a method of train/direct nor a search from a network's
+/// estimates.
+bool is_trained(const RunRequest& request);
+
 /// Splits the rows and fits the scale of the targets. Throws InputError if a method needs complete records
 /// but the dataset is not on disk.
 PreparedRun prepare(const data::ShardStream& stream, const RunRequest& request);
