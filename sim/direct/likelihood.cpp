@@ -229,9 +229,21 @@ MostProbable most_probable_of(const Effect& machine, const Recording& record,
   for (const auto& f : free) middle[static_cast<std::size_t>(f.index)] = f.mean;
   for (const auto& start : candidates)
     if (agree < kAgree) take(start);
-  if (agree < kAgree) take(middle);
+  if (agree < kAgree && std::ranges::find(candidates, middle) == candidates.end()) take(middle);
   for (std::uint32_t k = 0; k < kStartsDrawn && agree < kAgree; ++k) take(drawn(middle, k, free));
   return best;
+}
+
+MostProbable most_probable_near(const Effect& machine, const Recording& record,
+                                const std::vector<double>& start, std::span<const ParameterPrior> free,
+                                const LikelihoodOptions& options) {
+  constexpr double kBeyondNoise = 5;  // standard deviations of the reduced chi-square
+  const NoisyRecord noisy = noisy_record(record, options.longest);
+  const MostProbable one = most_probable(machine, record, start, free, options);
+  if (noisy.samples() < kShortestStretch) return one;
+  const double deviation = std::sqrt(2 / static_cast<double>(residual_count(noisy)));
+  if (one.chi_square < 1 + kBeyondNoise * deviation) return one;
+  return most_probable_of(machine, record, {&start, 1}, free, options);
 }
 
 std::vector<double> error_bound(const Effect& machine, const Recording& record,

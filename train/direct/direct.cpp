@@ -97,7 +97,7 @@ class Rows {
  private:
   [[nodiscard]] std::vector<double> found(const sim::Recording& r, const std::vector<double>& known) const {
     if (method_ == Method::curve_fit) return fitted(r, known);
-    if (method_ == Method::from_start) return sim::direct::most_probable(*effect_, r, known, unknown_).p;
+    if (method_ == Method::from_start) return sim::direct::most_probable_near(*effect_, r, known, unknown_).p;
     auto all = effect_->closed_form(noise_.none() ? r : sim::direct::smoothed(r), known.data());
     if (all.empty()) all.push_back(known);
     if (method_ == Method::closed_form) return all.front();

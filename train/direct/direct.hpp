@@ -33,8 +33,9 @@ std::vector<double> estimate(const mpi::store::Dataset& dataset, std::span<const
                              std::string_view method, const data::NoiseRecipe& noise = {},
                              const std::function<void(std::size_t)>& report = {});
 
-/// Returns maximum a posteriori estimates, each searched from one start only. `starts`: rows x parameters
-/// [raw units]. Otherwise like `estimate`; the level of `noise` must be above 0.
+/// Returns maximum a posteriori estimates, searched from `starts`, rows x parameters [raw units]. A
+/// search whose residuals are more than noise is repeated from further starts. Otherwise like `estimate`; the
+/// level of `noise` must be above 0.
 std::vector<double> estimate_from(const mpi::store::Dataset& dataset, std::span<const std::uint64_t> rows,
                                   std::span<const double> starts, const data::NoiseRecipe& noise,
                                   const std::function<void(std::size_t)>& report = {});
