@@ -103,7 +103,7 @@ void bench(const std::string& system, const Free& free, double level, int events
         truth, [&] { return most_probable(effect, c.noisy, c.truth, free); }, 0);
     truth.excess.pop_back();
     timed(
-        scaled, [&] { return most_probable(effect, c.noisy, near, free); }, best);
+        scaled, [&] { return most_probable_near(effect, c.noisy, near, free); }, best);
     timed(
         mean, [&] { return most_probable(effect, c.noisy, middle, free); }, best);
     timed(
