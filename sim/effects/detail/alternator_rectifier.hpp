@@ -1,6 +1,6 @@
 #pragma once
 // Brushless exciter of EXAC1, EXAC2 and ESAC1A: regulator, alternator, rectifier. A Model names the
-// regulator's limits, may add coefficients after `alternator`, and maps the regulator's output to the
+// regulator's limits, may add coefficients from `alternator` on, and maps the regulator's output to the
 // alternator's field by field_input(c, output, Vfe).
 
 #include "sim/core/blocks.hpp"

@@ -13,8 +13,8 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// A Model must have the parameters below, with names without the k, the coefficients that prepare_common()
-/// fills, and the states Ip, Iq and Vf.
+/// A Model must have the parameters below, with the names of their records, and Te and Tfreq. It must also
+/// have the coefficients that prepare_common() fills, and the states Ip, Iq, Vf, Vrlag and Vilag.
 template <class Model>
 struct BehindImpedance : ControlledCurrent<Model> {
   static constexpr Source defaults_from = literature::own("as REGCA1's");

@@ -1,5 +1,5 @@
 #pragma once
-// Power source of the static exciters ESST4B and ESST3A: phasor sum of terminal voltage and current,
+// Power source of the exciters ESST4B, ESST3A, EXPIC1 and IEEET3: phasor sum of terminal voltage and current,
 // rectified.
 #include <fmt/format.h>
 

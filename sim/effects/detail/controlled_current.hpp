@@ -1,7 +1,7 @@
 #pragma once
-// Common part of the controlled-current sources REGCA1, CSVGN1 and DERA1: reactance in the network equations,
-// zero internal voltage, frequency of the terminal. A Model has the coefficients iTfreq and per_angle and the
-// states Vrlag and Vilag.
+// Common part of the controlled-current sources REGCA1, REGCB1, REGCC1, CSVGN1 and DERA1: reactance in the
+// network equations, zero internal voltage, frequency of the terminal. A Model has the coefficients iTfreq
+// and per_angle and the states Vrlag and Vilag.
 #include <cmath>
 
 #include "sim/core/bus_frequency.hpp"

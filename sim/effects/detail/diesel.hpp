@@ -39,7 +39,7 @@ struct Diesel {
       kTMIN =
           lower_limit({"TMIN", "TMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the throttle"});
   /// Order of the delay's Pade approximation: exp(-s TD) as a ratio of polynomials of orders 3 and 4. Its
-  /// error is 1e-3 up to s TD = 3j, and it has no direct response to a step.
+  /// error is at most 1e-3 up to s TD = 2.5j, and it has no direct response to a step.
   static constexpr int kDelayOrder = 4;
   enum C { iTb, iT1, box_lead, gain, t4, iT5, iT6, high, low, iTD, own };
   enum X { box, box_rate, integral, lead, throttle, delay, own_states = delay + kDelayOrder };

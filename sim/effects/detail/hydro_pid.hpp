@@ -16,7 +16,7 @@ T turbine_rating(const T& given, const Conventions& conventions) {
   return select(given > T(kLeastRating), given, T(conventions.mva));
 }
 
-/// Openings and powers of the points of a gate's curve; a model uses the first few.
+/// Openings and powers of the points of a gate's curve: HYG3 uses all six points, WSHYGP the first five.
 inline constexpr Source kFarPoint = literature::own("99 marks a point that is never reached");
 constexpr Parameter curve_point(std::string_view name, std::string_view meaning) {
   return {name, name, "pu", 0.0, 0.0, 99.0, kNoNullValue, meaning, kAsEffect, kFarPoint};

@@ -4,7 +4,8 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Rate of the return to a limit [1/s]: fast compared with all time constants, slow enough for integration.
+/// Rate of the return to a limit [1/s]: faster than the limited lags with their default time constants (at
+/// least 4 ms), slow enough for integration.
 inline constexpr double kReturn = 500.0;
 
 /// Returns the output of 1/(1 + sT) with the limits `least` and `most`; T = 0 passes the limited input.

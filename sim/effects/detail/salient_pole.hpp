@@ -1,6 +1,6 @@
 #pragma once
 // Salient-pole machine of GENSAL and GENSAE: one field and one damper circuit in each axis. A Model defines
-// the saturation: it adds its coefficients after `circuits` and implements prepare, electrical, derivative
+// the saturation: it adds its coefficients from `circuits` on and implements prepare, electrical, derivative
 // and steady with the functions below.
 
 #include "base/constants.hpp"
@@ -117,8 +117,8 @@ struct SalientPole {
   static T unsaturated_field(const T* c, const T* x, const T* m) {
     return x[Eqp] + c[dXd] * (m[Id] - c[kd] * m[td]);
   }
-  /// Computes the rotor's derivatives. `excited`: q-axis damper flux with its saturation, psi''q (1 + ks Se)
-  /// [pu].
+  /// Computes the rotor's derivatives. `excited`: psi''q with the saturation of the q axis, psi''q (1 + ks
+  /// Se) for GENSAE and psi''q for GENSAL [pu].
   template <class T>
   static void rotor_derivative(const T* c, const T* x, const T* m, const Signals<T>& s, const T& excited,
                                T* dx) {

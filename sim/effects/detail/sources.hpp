@@ -1,7 +1,7 @@
 #pragma once
 // Common references (literature, own choices) for the effects' default values and bounds. "The case files"
-// are those of the works named in sim/core/literature.hpp: some 60 .dyr files, with 2,700 records of the
-// compiled models.
+// are those of the works named in sim/core/literature.hpp: some 60 .dyr files, with more than 3,400 records
+// of the compiled models.
 #include "sim/core/literature.hpp"
 
 namespace swingbank::sim::effects::shared {

@@ -32,7 +32,7 @@ struct StaticLoad {
     values.require_finite(finite);
     values.require_divisors({M::Vp, M::Vi});
   }
-  /// Computes the current of the admittance g + jb [pu], which avoids a division by V.
+  /// Computes the current of the admittance g - jb [pu], which avoids a division by V.
   template <class T>
   static void draw(const T& g, const T& b, Signals<T>& signal) {
     signal.Ir = T(0.0) - g * signal.Vr - b * signal.Vi;
