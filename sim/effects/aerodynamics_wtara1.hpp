@@ -1,5 +1,5 @@
 #pragma once
-// WTARA1: aerodynamics of a wind turbine, linear in the pitch angle.
+// WTARA1: aerodynamics of a wind turbine, quadratic in the pitch angle.
 
 #include "sim/core/effect.hpp"
 #include "sim/effects/detail/renewable.hpp"

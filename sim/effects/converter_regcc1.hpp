@@ -137,7 +137,7 @@ struct Model : shared::BehindImpedance<Model> {
       {.name = "w",
        .unit = "rad/s",
        .meaning = "integral of the phase-locked loop",
-       .weight = 0.1,  // its error acts through the angle, within the loop's settling time of about 0.1 s
+       .weight = 0.1,  // its error acts through the angle, within a quarter of the loop's period, 0.07 s
        .bends = true},
       kVrlag,
       kVilag};

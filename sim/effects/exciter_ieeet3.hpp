@@ -103,7 +103,7 @@ struct Model {
     c[self] = p[KE];
     Feed::prepare<T>({p[KP], p[KI], zero, zero, zero, far}, c + source_first);
   }
-  /// Returns the source's contribution to Vr [pu]. Sets `share` to the fraction of the voltage that remains.
+  /// Returns the source's contribution to VB [pu]. Sets `share` to the fraction of the voltage that remains.
   template <class T>
   static T supply(const T* c, const Signals<T>& s, T& share) {
     using std::sqrt;

@@ -4,8 +4,8 @@
 // PSS/E computes the acceleration limiter's output as the stroke of the previous step plus Ka (Aset -
 // acceleration) dt. The stroke thus rises no faster than Ka (Aset - acceleration). Here the state `accel`
 // imposes this rate independent of the step size. It follows the lower output of the other two controllers,
-// at the distance kAbove above it, with the time constant kFollow. A stroke that rises slower than
-// kAbove/kFollow thus never reaches `accel`.
+// at the distance kAbove above it, with the time constant kFollow. A stroke that rises slower than both
+// kAbove/kFollow and Ka (Aset - acceleration) thus does not reach `accel`.
 #include <fmt/format.h>
 
 #include "sim/core/blocks.hpp"

@@ -108,7 +108,8 @@ struct Model {
   static void check(const double* p, const std::string& where, Problems& problems) {
     check_as(name, p, where, problems);
   }
-  /// Checks another model that begins with the same parameters; `model`: its name.
+  /// Checks the parameters of IEEEG1 or of a model that uses its equations; `model`: its name, `p`: values in
+  /// the order of IEEEG1.
   static void check_as(std::string_view model, const double* p, const std::string& where, Problems& problems);
 
   template <class T>
@@ -139,7 +140,7 @@ struct Model {
     const T error = c[Pref] + s.dPref + s.dGref - c[gain] * speed - position;
     dx[valve] = clamp(error * c[iT3], c[closing], c[opening]);
   }
-  /// Returns the torque of the turbine stages after the valve [pu].
+  /// Returns the mechanical power Pm of the turbine stages after the valve [pu].
   template <class T>
   static T stages(const T* c, const T* x, const T& steam, T* dx) {
     const T x4 = lag(c[iT4], x[bowl], steam, dx[bowl]);
