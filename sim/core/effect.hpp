@@ -8,6 +8,9 @@
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
 //   check()                       refuses values at which the equations fail, such as a divisor of 0
 //   unphysical()                  optional: refuses random draws in an order that no machine has (Xd < X'd)
+//   coefficients, scratch         numbers of coefficients and, of a machine, of scratch values
+//   raw_resistance, raw_reactance of a machine, optional: parameters that PSS/E keeps in the .raw
+//   variant_of                    optional: name of the effect of which it is a variant
 //   prepare<T>()                  computes coefficients from parameters, so that no time step divides
 //   equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
@@ -53,7 +56,7 @@ enum class Slot {
   stabiliser,      ///< outputs Vs; after the governor, because accelerating power needs Tm
   limiter,         ///< adds to Vlimiter
   exciter,         ///< outputs Efd
-  plant_control,   ///< outputs Pext, Qext; this and the next four slots exist in converters only
+  plant_control,   ///< outputs Pext, Qext; this and the next five slots exist in converters only
   torque_control,  ///< outputs Pext and wref from the turbine's speed
   pitch_control,   ///< outputs pitch
   aerodynamics,    ///< outputs Paero
@@ -213,8 +216,8 @@ struct Signals {
 };
 
 /// Equations of a machine: voltage `e` behind the constant impedance r + jx, both on the machine's base.
-/// State 0 is the rotor angle, state 1 the speed deviation. x: states; c: coefficients; m: scratch memory
-/// shared by the functions of one evaluation.
+/// State 0 of a synchronous machine is the rotor angle, state 1 the speed deviation. x: states; c:
+/// coefficients; m: scratch memory shared by the functions of one evaluation.
 template <class T>
 struct MachineOps {
   /// Parameters -> source impedance r + jx [pu on the machine's base].
