@@ -1,7 +1,7 @@
 #pragma once
 // Equations of one plant, for any combination of effects, in the evaluation order common to all integrators:
-//   emf -> (network: current) -> terminal -> machine.electrical -> controls in order of Slot -> afterwards
-//   -> machine.derivative -> non-windup limits
+//   emf -> (network: current) -> terminal -> machine.electrical -> publish -> controls in order of Slot
+//   -> afterwards -> machine.derivative -> non-windup limits
 // The states of a plant are contiguous, machine first. The coefficients are contiguous too; the plant's own
 // coefficients (Joint) follow those of the machine.
 #include <algorithm>
@@ -83,8 +83,8 @@ class PlantEquations {
     return has_transformer_ ? c + joint_ + joint_ratio : nullptr;
   }
 
-  /// Computes Vr, Vi at the terminal and Vpr, Vpi at the grid's side from er + j ei of emf() and the current
-  /// Ir, Ii into the grid. On return, Ir, Ii are the machine's current.
+  /// Computes Vr, Vi at the terminal and, with a step-up transformer, Vpr, Vpi at the grid's side, from er +
+  /// j ei of emf() and the current Ir, Ii into the grid. On return, Ir, Ii are the machine's current.
   void voltages(const T* c, const T& er, const T& ei, Signals<T>& s) const {
     const T* j = c + joint_;
     if (!has_transformer_) {
@@ -98,7 +98,7 @@ class PlantEquations {
     look_far(s, s.Vpr, s.Vpi, s.Ir, s.Ii);
     through_transformer(c, s);
   }
-  /// As voltages(), from the voltage Vpr, Vpi at the grid's side. Not usable at V = 0.
+  /// As voltages(), from the voltage Vpr, Vpi at the grid's side and the current Ir, Ii into the grid.
   void through_transformer(const T* c, Signals<T>& s) const {
     const T* j = c + joint_;
     const T n = j[joint_ratio], in = T(1.0) / n;
@@ -159,7 +159,7 @@ class PlantEquations {
     machine_.derivative(c, x, m, s, dx);
     limit_derivatives(c, x, dx);
   }
-  /// As derivative(), for a plant with machine_alone(); needs only Ir and Ii.
+  /// As derivative(), for a plant with machine_alone(); needs only Ir, Ii, Efd and Tm.
   void machine_derivative(const T* c, const T* x, T* m, Signals<T>& s, T* dx) const {
     machine_.electrical(c, x, m, s);
     machine_.derivative(c, x, m, s, dx);

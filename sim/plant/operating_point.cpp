@@ -1,4 +1,4 @@
-// Back-initialisation of one plant with its controls, from terminal voltage and generation.
+// Back-initialisation of one plant with its controls, from the voltage of its bus and its generation.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,5 +1,6 @@
 #pragma once
-// Physical orderings of machine parameters: Xd > X'd > X''d > Xl, T'do > T''do.
+// Physical orderings of machine parameters: Xd > X'd > X''d > Xl, T'do > T''do, likewise in the q axis, and
+// S1.2 > S1.0.
 #include <string>
 #include <vector>
 

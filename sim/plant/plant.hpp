@@ -74,8 +74,8 @@ using Operating = OperatingOf<double>;
 
 /// Initialises one plant exactly, including saturation, from the voltage at its bus [pu] and its generation
 /// [pu on base_mva]. The machine is first, then the controls in order of Slot (of a converter: in reverse).
-/// Throws InputError if an effect has no steady state, a state is outside its limits or a derivative exceeds
-/// 1e-9.
+/// Throws InputError if an effect has no steady state, a state is outside its limits, the controls' Efd or Tm
+/// differs from the machine's, or a derivative exceeds 1e-9.
 Operating operating_point(const Plant& plant, Complex voltage, double base_mva,
                           const Conventions& conventions);
 /// As operating_point(), with the values of every block given as T, in the order of block_parameters().

@@ -25,7 +25,7 @@ struct SearchRange {
 };
 /// Returns the search range of a parameter with the value `value` in its model. A value outside the usual
 /// range extends the range beyond itself by the range's width. The extension crosses zero only if the usual
-/// range does.
+/// range does or the value has the other sign.
 SearchRange search_range(const Parameter& record, double value);
 
 }  // namespace swingbank::sim::plant
