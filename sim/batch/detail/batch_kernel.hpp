@@ -186,7 +186,7 @@ class BatchKernel {
   std::vector<LoadSlice> loads_;
   std::vector<Watch> watched_;
   std::vector<int> nonlinear_;            ///< nonlinear sources: plants, then loads
-  bool limited_ = false, timed_ = false;  ///< true if any state has limits; if any effect depends on time
+  bool limited_ = false, timed_ = false;  ///< true if any plant's state has limits; if any plant has controls
   bool shares_ = false;                   ///< true if the lanes share one matrix (grids of many sources)
   std::vector<int> stopped_;              ///< states with limits
   std::vector<int> kinked_;               ///< states with a kink error estimate in every step (State::bends)
@@ -207,7 +207,7 @@ class BatchKernel {
   Constants per_lane_, per_sample_;
   std::vector<T> m_, er_, ei_;   ///< scratch of one evaluation
   std::vector<T> ir_, ii_;       ///< scratch, if shares_
-  Signals<T> signals_;           ///< scratch shared by all plants, because a new object would zero 25 packs
+  Signals<T> signals_;           ///< scratch shared by all plants, because a new object would zero 38 packs
   std::vector<T> algebra_;       ///< scratch of newton_step
   std::vector<T> steady_;        ///< currents that the linear sources cause at the nonlinear sources
   T time_{}, start_{};           ///< time of the evaluation, start of the step [s]

@@ -1,8 +1,8 @@
 #pragma once
 // The network reduced to the sources' internal nodes: terminal currents as a linear function of the voltages
 // behind the machines' impedances, per topology. The reduction has two steps: Kron reduction to the buses
-// with sources, once per topology, then a dense solve with the sources' impedances, once per set of
-// impedances.
+// with sources and the remotely measured buses, once per topology, then a dense solve with the sources'
+// impedances, once per set of impedances.
 #include <Eigen/Dense>
 #include <deque>
 #include <vector>
@@ -59,7 +59,7 @@ class InternalNetwork {
   [[nodiscard]] int sources() const { return static_cast<int>(node_of_.size()); }
   /// Returns the matrix of a topology. r, x: impedance per source [pu on its own base]. The matrix of each
   /// topology is cached until r or x changes. The reference is valid until the next call for this topology
-  /// with other impedances.
+  /// with other impedances, or until calls for many other topologies remove it from the cache (kCacheLimit).
   const InternalMatrix& matrix(const network::Topology& topology, const std::vector<double>& r,
                                const std::vector<double>& x);
 

@@ -62,7 +62,7 @@ struct BatchRun {
   std::vector<double, CacheAligned<double>>
       waiting;                ///< states of the buffered samples, [pack][state][sample]
   std::vector<double> theta;  ///< last terminal angle per recorded plant, kept while V = 0 [rad]
-  std::vector<int> islands;   ///< island number per plant; empty if the segment has only one island
+  std::vector<int> islands;   ///< island number per plant; empty if all plants are in one island
   LaneClock clock;
   Trajectory record;
 };

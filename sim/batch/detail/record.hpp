@@ -1,8 +1,8 @@
 #pragma once
 // Batch kernel: recording. The states at the sample times are interpolated lane by lane and buffered. The
-// outputs are evaluated once the buffer is full, with the lanes of a pack as consecutive samples of one
-// event. This occupies every lane, independent of the step sizes, and writes each channel in whole cache
-// lines.
+// outputs are evaluated once the buffer is full or the segment ends, with the lanes of a pack as consecutive
+// samples of one event. This occupies every lane, independent of the step sizes, and writes each channel in
+// whole cache lines.
 #include <algorithm>
 #include <array>
 
@@ -277,7 +277,7 @@ void BatchKernel<T>::outputs(std::size_t k, const T* x, BatchRun& run, int count
 template <class T>
 T BatchKernel<T>::unwrapped(T angle, const T& squared, double last, int count) const {
   constexpr double kNoAngle = 1e-9;  // [pu]; a smaller |V| is the rounding error at a bolted fault
-  T turns(0.0);  // added at the end, because set() would clear the derivatives of the angle
+  T turns(0.0);                      // [rad], added at the end
   for (int l = 0; l < count; ++l) {
     if (Traits::get(squared, l) < kNoAngle * kNoAngle) Traits::set(angle, l, last);
     const double now = Traits::get(angle, l);

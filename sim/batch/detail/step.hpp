@@ -194,8 +194,8 @@ void BatchKernel<T>::clamp_states() {
     }
 }
 
-/// Finishes a step: hands over runs that lost synchronism or reached their end, and starts the next segment
-/// of lanes at a switching time.
+/// Finishes a step: hands over runs that failed, lost synchronism or reached their end, and starts the next
+/// segment of lanes at a switching time.
 template <class T>
 void BatchKernel<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];

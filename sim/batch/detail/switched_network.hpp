@@ -20,8 +20,9 @@ class SwitchedNetwork {
   /// r, x: impedance per plant [pu on its own base]. Every load must be a constant impedance.
   SwitchedNetwork(const grid::Grid& grid, const std::vector<double>& r, const std::vector<double>& x);
   /// Returns the change of the matrix relative to the unswitched network, with at most `most` products.
-  /// Returns none if a generator is tripped, entirely or in part, if more than `most` buses are affected, or
-  /// if the switched network is ill-conditioned. InternalNetwork then computes the matrix.
+  /// Returns none if a generator is tripped, entirely or in part, if more than `most` buses are affected, if
+  /// the network could not be factorised, or if the switched network is ill-conditioned. InternalNetwork then
+  /// computes the matrix.
   [[nodiscard]] std::optional<LowRank> change(const network::Topology& topology, int most) const;
 
   /// Returns true if the network could be factorised; only then row() and column() of the unswitched reduced
