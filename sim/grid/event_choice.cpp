@@ -15,7 +15,7 @@ namespace swingbank::sim::grid {
 namespace {
 
 /// Returns the machines with their step-up transformers as sequence sources, with their positive-sequence
-/// impedances.
+/// admittances.
 std::vector<network::SequenceSource> sequence_sources(const Grid& grid) {
   std::vector<network::SequenceSource> list;
   for (const plant::Plant& plant : grid.plants) {

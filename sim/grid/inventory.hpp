@@ -38,7 +38,7 @@ struct UnitCount {
 struct Inventory {
   std::vector<UnitCount> units;     ///< in the order of the .raw
   std::vector<ModelCount> models;   ///< most records first
-  int without_generator = 0;        ///< number of records of known controls without a generator in the .raw
+  int without_generator = 0;        ///< number of records of known unit models without a generator
   int first_without_generator = 0;  ///< line of the first such record
   std::vector<std::string> raw_faults = {}, dyr_faults = {};  ///< messages about the files
 };

@@ -9,7 +9,7 @@ namespace swingbank::sim::grid {
 
 /// Returns the grid with `network`, which is its own network with other loads, generation, regulated voltages
 /// or branches in service. Solves the power flow and updates plants and dynamic loads. Throws what
-/// solve_power_flow() throws.
+/// solve_power_flow() throws, and InputError if a dynamic load has no consumption.
 Grid at_operating_point(const Grid& grid, network::Network network);
 
 /// Sets a plant's machine base [MVA]. Its parameters keep their per-unit values on the new base; its power in

@@ -32,7 +32,8 @@ std::string columns_text(const Effect& effect);
 /// Returns the model's name; for a user-written model, its own name.
 inline std::string name_of(const formats::DyrRecord& r) { return r.user.empty() ? r.model : r.user; }
 /// Reduces a record to the parameters of its effect. Drops the codes IC, IT, NI, NC, NS, NV of a user-written
-/// model, and the mechanically switched shunts in the model of a switched shunt. Other records are returned
+/// model, and the mechanically switched shunts in the model of a switched shunt. Orders the values of an
+/// alias as the effect's columns, and turns remaining texts into faults. Other records are returned
 /// unchanged.
 formats::DyrRecord plain(formats::DyrRecord record, const Effect& effect);
 /// Id of a record that names no switched shunt; it applies to the first one at its bus.

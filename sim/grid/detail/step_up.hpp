@@ -23,7 +23,8 @@ struct StepUp {
 /// impedance and ratio between the machine and its bus, included in the result.
 StepUp step_up(const network::Network& network, int machine, int far, const StepUp& first);
 /// Returns a description of other equipment at a bus of the path that may carry current, or "". Such
-/// equipment is a generator, a load, a shunt, or a branch in service that is not part of the path.
+/// equipment is a generator, a load, a shunt, or a branch in service outside the path that leads to further
+/// equipment or branches.
 std::string joins_on_the_way(const network::Network& network, const StepUp& way, int bus);
 
 }  // namespace swingbank::sim::grid
