@@ -112,7 +112,7 @@ class DydReader {
     out_.dyr.records.push_back(std::move(out));
   }
 
-  /// Returns the values in the model's column order; NaN for missing ones.
+  /// Returns the values in the model's column order; a missing one is Column::off.
   std::vector<double> values_of(const dyd::Model& model, const Line& line, Problems& faults) const {
     std::vector<double> values(model.in.size(), std::nan(""));
     std::size_t next = 0;

@@ -29,11 +29,11 @@ struct DydSurvey {
 };
 
 /// Reads a .dyd with records of the form "model bus "name" kV "id" : #level mva=... values". Values are in
-/// the documented order, or each follows its name in quotes. '#' begins a comment; '/' at the end of a line
-/// continues the record on the next. Buses are identified by number. A governor with its own rating (mwcap)
-/// is converted to the machine's base. PSLF features that the counterpart does not have must be switched off;
-/// otherwise DyrRecord::faults names the feature. Meters, relays and loads are ignored. Throws InputError
-/// only if the file cannot be read at all.
+/// the documented order, or each follows its name in quotes. A line that begins with '#' or '@' is a comment;
+/// '/' at the end of a line continues the record on the next. Buses are identified by number. A governor with
+/// its own rating (mwcap) is converted to the machine's base. PSLF features that the counterpart does not
+/// have must be switched off; otherwise DyrRecord::faults names the feature. Meters, relays and loads are
+/// ignored. Throws InputError only if the file cannot be read at all.
 DydSurvey survey_dyd(const std::filesystem::path& file);
 /// The same for a string; `name` replaces the file name in messages.
 DydSurvey parse_dyd_survey(const std::string& text, const std::string& name);

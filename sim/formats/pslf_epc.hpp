@@ -13,8 +13,8 @@ namespace swingbank::sim::formats {
 ///
 /// The file begins with "title", "comments" and "solution parameters" (only sbase is used); each ends at a
 /// line '!'. Sections such as "bus data [count] ..." follow, up to "end". A record is "equipment : values". A
-/// '/' at the end of a line continues the record on the next; '#' and '@' begin comments. A section must have
-/// the announced number of records.
+/// '/' at the end of a line continues the record on the next; a line that begins with '#' or '@' is a
+/// comment. A section that is read must have the announced number of records.
 ///
 /// Read:
 /// - bus; load; branch (line sections in series are combined);
@@ -22,13 +22,14 @@ namespace swingbank::sim::formats {
 ///   bus, numbered above all others); the ratio of a primary winding is tapp + tapfp - 1;
 /// - shunt, at a bus or at an end of a branch;
 /// - svd: a shunt g + jb, which can switch its steps within its band if its type is 1;
-/// - generator, which regulates its bus to vsched;
+/// - generator, which regulates its own or another bus to vsched;
 /// - converter of a dc line, which becomes its power at the file's voltages.
 ///
 /// Ignored, because they do not affect the equations: areas, zones, owners, interfaces, transactions,
 /// balancing authorities, substations, injection groups, ratings, dates, tap controls (taps are fixed).
 /// Impedance correction, motors and every other non-empty section are dropped with a remark. Refused: a line
-/// in ohms or with a transformer inside. A case has no frequency: the caller gives RawOptions::frequency_hz.
+/// or transformer in ohms, and a line with a transformer inside. A case has no frequency: the caller gives
+/// RawOptions::frequency_hz.
 ///
 /// Sources: public files written by PSLF (InterPSS, a case of 18 buses), by PowerWorld (GridDyn, IEEE test
 /// cases) and by BPA's power flow (ext_geb*.f); the columns of version 15 in InterPSS's readers.

@@ -13,8 +13,8 @@
 
 namespace swingbank::sim::formats {
 
-/// Treatment of equipment with a duplicate identity (buses and id). A duplicate bus is always treated as
-/// `refused`.
+/// Treatment of equipment with a duplicate identity (buses and id). A duplicate bus, switched shunt or shunt
+/// of a branch is always treated as `refused`.
 enum class Repeated {
   refused,   ///< a problem; dropped with RawOptions::drop_refused
   kept,      ///< kept under a new id
@@ -106,7 +106,7 @@ struct DyrRecord {
   std::vector<double> values;  ///< parameters, in the order of the file
   int line;                    ///< first line in the file
   std::string user{};          ///< name of a user-written model (model USRMDL and variants), otherwise empty
-  Problems faults{};           ///< errors of non-numeric parameters; they matter only if the model is used
+  Problems faults{};           ///< errors of unquoted text or .dyd columns, for a model that is used
   std::vector<int> empty{};    ///< empty parameters, counted from 1; their value is zero
   std::size_t codes = 0;       ///< user-written models: number of PSS/E codes at the beginning of `values`
   /// Text in place of the bus number (`bus` is 0): an extended bus name, or equipment without a bus (dc
@@ -140,8 +140,9 @@ DyrOptions read_dyr_options(Config& config, const std::string& prefix);
 /// that begins like a record (bus number, 'MODEL'), or the end of the file, also ends a record, which is then
 /// `unended`. Ctrl-Z, a line with Q alone and a record with 0 alone end the file.
 ///
-/// Non-numeric parameters are stored in DyrRecord::faults. All other errors are thrown together as an
-/// InputError, with line numbers. An ignored or mapped name that does not occur in the file is an error too.
+/// Non-numeric parameters are stored in DyrRecord::faults or, if quoted, in DyrRecord::texts. All other
+/// errors are thrown together as an InputError, with line numbers. An ignored or mapped name that does not
+/// occur in the file is an error too.
 std::vector<DyrRecord> read_dyr(const std::filesystem::path& file, const DyrOptions& options = {});
 /// The same for a string; `name` replaces the file name in messages.
 std::vector<DyrRecord> parse_dyr(const std::string& text, const std::string& name,

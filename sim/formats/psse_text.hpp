@@ -1,6 +1,6 @@
 #pragma once
-// PSS/E free format: fields separated by commas or blanks, names in quotes, '/' at the end of a record. Used
-// only by the readers and writers of .raw and .dyr.
+// PSS/E free format: fields separated by commas or blanks, names in quotes, '/' at the end of a record. The
+// readers of the other formats use its lines, fields and numbers.
 #include <filesystem>
 #include <numbers>
 #include <optional>
@@ -25,7 +25,8 @@ struct Record {
   std::string place = {};     ///< place in messages, if it is not a line of the file
 };
 
-/// Returns the lines of a text file without their line ends. Throws InputError if it cannot be read.
+/// Returns the lines of a text file without '\n'; a '\r' before it remains. Throws InputError if it cannot be
+/// read.
 std::vector<std::string> read_lines(const std::filesystem::path& file);
 /// The same for a string.
 std::vector<std::string> lines_of(const std::string& text);

@@ -10,7 +10,7 @@ enum class Use {
   value,      ///< copied to a column of the .dyr
   mva_power,  ///< copied, multiplied by the ratio of the turbine's rating to the machine's base
   per_mva,    ///< copied, divided by this ratio
-  again,      ///< repeats the limit of an earlier column; must not be narrower
+  again,      ///< repeats the limit of an earlier column; must not be narrower, unless it is 0
   rating,     ///< column of the .dyr for the turbine's rating [MW], which precedes the values in a .dyd
   off,        ///< no counterpart; must have the value that disables it
   open,       ///< a limit without counterpart; must be too wide to act

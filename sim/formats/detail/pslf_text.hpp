@@ -1,6 +1,7 @@
 #pragma once
 // Tokens and records of PSLF's text files: words, names in double quotes, ':' between equipment and values,
-// '/' at the end of a continued line, comments after '#' or '@'. Used only by the readers of .dyd and .epc.
+// '/' at the end of a continued line, comment lines that begin with '#' or '@'. Used only by the readers of
+// .dyd and .epc.
 #include <string>
 #include <string_view>
 #include <vector>
