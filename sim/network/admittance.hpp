@@ -1,6 +1,6 @@
 #pragma once
 // Admittance matrices: the bus matrix with constant-impedance loads, faults and open branches, and its Kron
-// reduction to the generator buses.
+// reduction to chosen buses.
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 

@@ -176,7 +176,8 @@ struct FileBalance {
     return {size(1.0), size(0.0)};
   }
   /// Returns 1 for each duplicate that the file's voltages confirm. The start is a rounded least-squares
-  /// solution. Then the decision on each duplicate is repeated in turn until none changes.
+  /// solution. Then the decision on each duplicate is repeated in turn until none changes (at most 20
+  /// rounds).
   [[nodiscard]] Eigen::VectorXd shown() const {
     Eigen::VectorXd kept = Eigen::VectorXd::Ones(drawn.cols());
     if (drawn.rows() > 0) kept = drawn.completeOrthogonalDecomposition().solve(-others);

@@ -40,8 +40,9 @@ void settle_duplicates(Network& network, const std::vector<Duplicate>& duplicate
 /// - Reactive limits with q_min above q_max are removed.
 /// `where(i)`: place of generator i in the file.
 void settle_generators(Network& network, const std::function<std::string(std::size_t)>& where);
-/// In every island without a slack bus, makes the bus of the largest generator (by MVA) the slack bus. Takes
-/// islands without a generator out of service (type 4). Adds remarks.
+/// Makes slack buses without a generator in service load buses. In every island without a slack bus, makes
+/// the bus of type 2 with the largest sum of machine bases [MVA] the slack bus. Takes islands without such a
+/// bus out of service (type 4). Adds remarks.
 void settle_islands(Network& network);
 
 /// Equipment without a model in Swingbank: kind, name and buses.

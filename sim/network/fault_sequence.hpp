@@ -39,9 +39,9 @@ Complex negative_sequence_impedance(const Network& network, const PowerFlow& flo
                                     const std::vector<SequenceSource>& sources, int bus);
 
 /// Replaces the event's single fault, whose impedance z is zf, by the equivalent positive-sequence shunt.
-/// Switchings up to the start of the fault are included. Problems: more than one fault; a switching during
-/// the fault, which would change the negative sequence; z0 missing, or given for a fault that does not need
-/// it.
+/// Switchings up to the start of the fault are included. Problems: none or more than one fault; a switching
+/// during the fault, which would change the negative sequence; z0 missing, or given for a fault that does not
+/// need it.
 void make_unbalanced(Event& event, FaultType type, std::optional<Complex> z0, const Network& network,
                      const PowerFlow& flow, const std::vector<SequenceSource>& sources, Problems& problems);
 

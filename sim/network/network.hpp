@@ -28,8 +28,9 @@ struct Bus {
 enum class LoadKind {
   load,
   generator,  ///< a generator without a machine model, as negative consumption
-  device,     ///< equipment without a model here (dc line, FACTS device), by its consumption in the file
-  shunt       ///< a switched shunt with a dynamic model, by its admittance in the file
+  device,     ///< equipment without a model here (dc line, FACTS device) or an imbalance, from the file's
+              ///< voltages
+  shunt       ///< a switched shunt with a dynamic model, by its admittance in the power flow
 };
 /// Consumption P + jQ [pu] with constant-power, constant-current and constant-admittance parts at 1 pu
 /// voltage: S = power + current V + admittance V^2.
@@ -101,7 +102,7 @@ struct Network {
 
   /// Records that `what` was done at `place`.
   void remark(const std::string& what, const std::string& place);
-  /// Returns the index of the bus with this number, or -1. Star points have no number.
+  /// Returns the index of the bus with this number, or -1. Star points are not found.
   [[nodiscard]] int bus_index(int number) const;
   /// Returns "bus 7" or "star point of 2-3-4" for messages.
   [[nodiscard]] std::string bus_text(int bus) const;

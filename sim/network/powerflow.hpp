@@ -25,7 +25,7 @@ struct PowerFlow {
 /// Options of the power flow.
 struct PowerFlowOptions {
   double tolerance = 1e-12;     ///< largest accepted mismatch [pu]
-  int limit = 30;               ///< largest number of Newton iterations
+  int limit = 30;               ///< largest number of Newton iterations per start, times 5 with short steps
   bool reactive_limits = true;  ///< apply the generators' reactive limits
   bool step_shunts = false;     ///< step switched shunts until the regulated voltages lie in their bands
 };
@@ -33,20 +33,23 @@ struct PowerFlowOptions {
 /// - A generator regulates the voltage of its bus, or of `regulated`.
 /// - Generators that regulate one remote bus share their reactive power by `share`.
 /// - A bus whose reactive power would be outside q_min to q_max delivers the limit. It regulates again once
-///   the voltage has crossed the set-point. Slack buses and buses with q_min above q_max have no limits.
+///   the voltage has crossed the set-point, at most three times. Slack buses and buses with q_min above q_max
+///   have no limits.
 /// - In every island at least one slack bus sets the angle and balances the power.
 /// - Between solutions, every switched shunt outside its band moves by one step. A shunt that would reverse
 ///   its direction stops.
 /// - A bus of type 2 without a generator in service is a load bus.
 /// - At a bus of type 1 generators deliver P and Q.
-/// - If Newton's method fails from the file's voltages, it is repeated from a flat start.
+/// - If Newton's method fails from the file's voltages, it is repeated from a flat start, then from both with
+///   short steps.
 /// - Mismatches below the rounding of the powers at a bus count as zero.
 /// Throws InputError on divergence (with the bus of the largest mismatch), and for an island without a slack
 /// bus.
 PowerFlow solve_power_flow(const Network& network, const PowerFlowOptions& options = {});
 
-/// Returns the file's own voltages as the solution. Generators deliver the power that balances their buses.
-/// At every other bus a constant admittance is added to the network for balance, with a remark.
+/// Returns the file's own voltages as the solution; of buses joined by ties, only one keeps its voltage.
+/// Generators deliver the power that balances their buses. At every other bus a constant admittance is added
+/// to the network for balance, with a remark.
 PowerFlow flow_of_file(Network& network);
 
 /// Returns the power imbalance of the file's voltages at each bus [pu]: power into branches and shunts, plus
