@@ -22,12 +22,12 @@ void require(int flag, const char* call) {
 /// types, and all files of a module may be compiled as one unit.
 namespace segments {
 
-constexpr int kMinimumDegree = 0;  ///< KLU's minimum-degree ordering; less fill-in here than KLU's default
+constexpr int kMinimumDegree = 0;  ///< minimum-degree ordering; less fill-in here than with COLAMD
 /// Relative change of the leading coefficient a (system.hpp) that triggers a new factorisation. IDA's 0.25 is
 /// for expensive matrices. Here a factorisation costs only as much as two residual evaluations, and with new
 /// factors Newton's method ends with smaller residuals.
 constexpr double kFactorAnew = 0.1;
-/// Number of steps after which the units' derivatives are recomputed, as in CVODE. They are recomputed
+/// Number of steps after which the units' derivatives are recomputed (CVODE: 51). They are recomputed
 /// earlier after a failed step, which may have crossed a limit, or if Newton's method does not converge.
 constexpr long kStepsPerJacobian = 20;
 

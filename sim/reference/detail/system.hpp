@@ -35,7 +35,7 @@ class ReferencePlants {
     /// Remote buses whose voltages the unit needs: the regulated bus, then both ends of the measured branch.
     std::vector<int> seen;
     network::BranchEnd flow{};  ///< measured end of the branch, whose buses are the last two of `seen`
-    int kind;                   ///< equal for units with the same effects
+    int kind;                   ///< equal for units with the same effects and number of remote buses
     int first, states;          ///< index of its first state; number of states
     int delta;                  ///< index of its rotor angle in its own states, -1 if none
     double scale;               ///< MVA base of the unit divided by that of the network
