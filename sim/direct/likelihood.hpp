@@ -22,7 +22,7 @@ ParameterPrior uniform_prior(int index, double low, double high);
 /// Maximum a posteriori estimate of the parameters.
 struct MostProbable {
   std::vector<double> p;  ///< all parameters of the effect
-  double chi_square = 0;  ///< reduced chi-square of the innovations; about 1 for a correct model
+  double chi_square = 0;  ///< reduced chi-square with steady state and prior; about 1 for a correct model
   double cost = 0;        ///< -2 times the logarithm of the posterior, up to a constant
   int iterations = 0;     ///< number of steps
 };
@@ -32,16 +32,16 @@ struct LikelihoodOptions {
   double longest = 13.0;  ///< length of the segment after the event [s]
 };
 
-/// Whether the likelihood supports the machine: at most kMostFlowing states, and a voltage behind a constant
-/// impedance.
+/// Whether the likelihood supports the machine: at most kMostFlowing states, at most 20 parameters, and a
+/// voltage behind a constant impedance.
 bool has_likelihood(const Effect& machine);
 
 /// Returns the estimate from one start. The record must state its noise level and should state the event's
 /// start. With fewer than kShortestStretch samples after the event, it returns the start.
 MostProbable most_probable(const Effect& machine, const Recording& record, std::vector<double> start,
                            std::span<const ParameterPrior> free, const LikelihoodOptions& options = {});
-/// Returns the best estimate from several starts. It tries the candidates, then the prior's mean, then random
-/// draws, until two starts agree in cost.
+/// Returns the best estimate from several starts. It tries the candidates, then the prior's mean, then at
+/// most twelve random draws, until two starts agree in cost.
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const ParameterPrior> free, const LikelihoodOptions& options = {});

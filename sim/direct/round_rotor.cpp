@@ -34,8 +34,8 @@ Solved solve(const MatrixXd& columns, const VectorXd& target, double samples) {
 
 /// Field circuit and d-axis damper, linear for a given angle:
 ///   int psi_d = -T''do (psi_d - psi_d0) + T''do gd1/T'do J + int J/T'do - (X'd - X'') int i_d + E'q0 t,
-/// with J the integral of Efd - Ifd. Every column is the sum of two angle-independent columns times the
-/// cosine and sine of the angle, so that their triangular factor is computed once.
+/// with J the integral of Efd - Ifd. Every column is independent of the angle, or the sum of two
+/// such columns times its cosine and sine, so that their triangular factor is computed once.
 class DirectAxis {
  public:
   explicit DirectAxis(const Turning& t) : samples_(static_cast<double>(t.V.size())) {

@@ -172,7 +172,7 @@ LinearisedResiduals linearise(const Effect& machine, const NoisyRecord& record, 
 
   States<double> x = plain.start();
   ByUnknowns S = dual.start();
-  // InputDerivatives at the beginning and the end of the segment.
+  // Derivatives at the beginning and the end of the segment.
   UnknownDerivatives here, end;
   const auto advance = [&](const Segment& s) {
     plain.integrate(x, plain.derivative_at(x, s.begin), s);
