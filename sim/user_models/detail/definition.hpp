@@ -9,8 +9,8 @@
 
 namespace swingbank::sim::user_models {
 
-/// Coefficients of a user-defined model: [0] system frequency, then the parameters, values at the operating
-/// point, unknowns of steady(), constants, and fixed values computed from these.
+/// Coefficients of a user-defined model: [0] system frequency, then the parameters, unknowns of steady(),
+/// values at the operating point, constants, and fixed values computed from these.
 constexpr int kFrequency = 0, kFirstParameter = 1;
 
 /// A condition on the parameters, checked by Effect::check.
