@@ -1,6 +1,6 @@
 #pragma once
 // Scalar types of the equations, and the functions that equations may apply to them: + - * / < > <=, select,
-// sqrt, exp, log, sincos, atan2 (only in steady()), square, positive_part, clamp.
+// sqrt, exp, log, sincos, atan2 (only in steady()), square, magnitude, positive_part, clamp, any_positive.
 #include <cmath>
 #include <tuple>
 
@@ -90,7 +90,7 @@ inline T clamp(const T& a, const T& low, const T& high) {
 }
 
 /// Returns the plain value of any scalar (lane 0 of a pack). Equations may use it only in messages and in
-/// `if` conditions of code that runs in double.
+/// conditions of code that runs in double or in dual numbers.
 inline double value_of(double a) { return a; }
 /// Returns the value of the first lane.
 template <class S, int N>
