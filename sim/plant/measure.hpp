@@ -29,8 +29,9 @@ TerminalRecord terminal_of(const Phasors& phasors, double first_theta);
 /// Applies the instruments of `chain` in order. Block k has its own random numbers, derived from `seed` and
 /// k.
 void measure(std::span<const Block> chain, std::uint64_t seed, Phasors& phasors);
-/// Returns the longest time, to either side, over which V and I at the chain's input affect V and I at its
-/// output [s]. An instrument that only delays the frequency (Effect::angle_lag) does not count.
+/// Returns an upper bound of the time, to either side, over which V and I at the chain's input affect V and I
+/// at its output: the sum of Effect::memory [s]. An instrument that only delays the frequency
+/// (Effect::angle_lag) does not count.
 double memory(std::span<const Block> chain);
 
 /// Reads "EFFECT[:PARAM=VALUE,...]" for the measurement slot, with the effects of `library`. Errors are added
