@@ -41,7 +41,7 @@ struct Load {
   int area = 1, zone = 1, owner = 1;   ///< load models of a .dyr may refer to these instead of a bus
   LoadKind kind = LoadKind::load;      ///< origin of the load
 };
-/// Fixed shunt at a bus.
+/// Shunt at a bus: fixed, or the present step of a switched shunt.
 struct Shunt {
   int bus;             ///< bus index
   std::string id;      ///< id in the file
