@@ -8,7 +8,8 @@
 
 namespace swingbank::sim::formats {
 
-/// Reads an .epc. Throws InputError with every error of the file, each with its line number. Changes to the
+/// Reads an .epc. Throws InputError with every error of the file, each with its line number. Errors in the
+/// division into sections, sbase or the frequency are reported alone. Changes to the
 /// data are recorded in Network::remarks.
 ///
 /// The file begins with "title", "comments" and "solution parameters" (only sbase is used); each ends at a

@@ -40,7 +40,8 @@ struct RawOptions {
 };
 
 /// Reads a .raw file of version 23 to 35, or a .rawx. Throws InputError with every error of the file, each
-/// with its line number. Changes to the data are recorded in Network::remarks.
+/// with its line number; a header or version with which the rest cannot be read is reported alone. Changes to
+/// the data are recorded in Network::remarks.
 ///
 /// Read:
 /// - header, bus, load, fixed shunt, generator, branch;

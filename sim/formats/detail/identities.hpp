@@ -26,8 +26,9 @@ class Identities {
   /// Registers an identity ("bus 5"). A duplicate is a problem; with RawOptions::drop_refused it is a remark.
   /// Returns false for a duplicate with drop_refused; the caller must then drop the equipment.
   bool once(const std::string& identity, const psse::Fields& fields);
-  /// Returns the id of the equipment: `given` if the identity "`before` 'id'`after`" is unique, a new id if
-  /// the duplicate is kept, none if it must be dropped. `of`: kind and bus numbers of the equipment.
+  /// Returns the id of the equipment: `given` if the identity "`before` 'id'`after`" is unique or its
+  /// duplicate is a problem, a new id if the duplicate is kept, none if it must be dropped. `of`: kind and
+  /// bus numbers of the equipment.
   std::optional<std::string> id(network::Duplicate of, const std::string& before, const std::string& given,
                                 const std::string& after, const psse::Fields& fields);
   /// Returns the duplicates that were kept under a new id.
