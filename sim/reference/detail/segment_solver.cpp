@@ -27,7 +27,7 @@ constexpr int kMinimumDegree = 0;  ///< minimum-degree ordering; less fill-in he
 /// for expensive matrices. Here a factorisation costs only as much as two residual evaluations, and with new
 /// factors Newton's method ends with smaller residuals.
 constexpr double kFactorAnew = 0.1;
-/// Number of steps after which the units' derivatives are recomputed (CVODE: 51). They are recomputed
+/// Number of steps after which the units' derivatives are recomputed (CVODE: 50). They are recomputed
 /// earlier after a failed step, which may have crossed a limit, or if Newton's method does not converge.
 constexpr long kStepsPerJacobian = 20;
 
