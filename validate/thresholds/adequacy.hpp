@@ -1,5 +1,5 @@
 #pragma once
-// Criteria by which three commands decide whether a model is adequate. The decision sets their exit codes.
+// Criteria by which four commands decide whether a model is adequate. The decision sets their exit codes.
 // Command compare plays the records into the given model without a refit, so the effect of a wrong parameter
 // counts. Every bin of the error maps has its own limit, and one bin beyond its limit is enough. Commands
 // calibrate and add refit the parameters, then test the reduced chi-square of each event, held out or not.

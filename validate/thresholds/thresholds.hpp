@@ -132,7 +132,8 @@ struct Noise {
   Threshold measurable{"noise.measurable", 4, "chi2 per value",
                        "largest reduced chi-square at which the noise is estimated from the residual of an "
                        "incomplete model, because its reactances are accurate enough (decision 16)"};
-  /// Reduced chi-square up to which the priors keep their full weight [chi2 per value].
+  /// Reduced chi-square above which a fit updates the weight of its priors while it improves [chi2 per
+  /// value].
   Threshold believed{"noise.believed", 1.5, "chi2 per value",
                      "largest reduced chi-square at which the priors have their full weight (decision 15)"};
   /// Reduced chi-square up to which calibrate corrects the bias from voltage noise [chi2 per value].
@@ -165,7 +166,7 @@ inline constexpr Search search;  ///< the thresholds in use
 /// Search for user-defined models of the inferred input (decision 21).
 struct UserModels {
   /// Largest share of the base model's chi2 that may remain with an inferred input for a user-defined model
-  /// to be searched [-].
+  /// to be searched, unless the remaining residual counts as noise [-].
   Threshold explains{"user_models.explains", 0.3, "share of the base model's chi2",
                      "largest share that may remain with the inferred input if a user-defined model is "
                      "searched: a reduction by 70 % (decision 21)"};
