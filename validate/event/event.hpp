@@ -13,7 +13,7 @@ namespace swingbank::validate::event {
 struct FitEventOptions {
   bool measured_states = true;  ///< compare speed, Efd and Ifd too, if recorded
   double step_threshold = switching::kStepThreshold;
-  ///< threshold of switching::VoltageSteps::detect() [pu]
+  ///< see switching::SwitchingOptions::threshold [pu]
   double pre_event = 1.0;  ///< length of the steady window of a record without switchings [s]
   switching::StepShape step_shape =
       switching::StepShape::either;  ///< shape of the steps; either: determined from the records
@@ -30,7 +30,8 @@ std::vector<FitEvent> prepare_events(const plant::PlantModel& model, std::vector
                                      const FitEventOptions& options = {});
 /// Returns the records with switching times and reconstructed voltage. This part of the preparation does not
 /// depend on the model's parameters. `options.mva` is required if an angle was integrated. Throws InputError
-/// if a record has no angle.
+/// if a record that needs an angle has none. Records of an exciter or a governor, and tests in which the
+/// breaker opens, need none.
 std::vector<switching::SwitchedRecord> reconstructed_records(std::vector<record::Record> records,
                                                              const FitEventOptions& options);
 /// Prepares the result of reconstructed_records(). Throws as the overload above.

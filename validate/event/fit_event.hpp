@@ -40,10 +40,11 @@ class KeptCurve {
 /// One event, prepared for fitting.
 struct FitEvent : switching::SwitchedRecord {
   playin::OperatingPoint start = {};  ///< operating point before the event
-  /// 1 for samples that are not compared: filtered samples, lost samples, and those next to a switching at an
-  /// uncertain time, where a delay of 1 ms may move a channel across the switching. Empty: all are compared.
+  /// 1 for samples that are not compared: filtered samples, lost samples, those next to a switching at an
+  /// uncertain time, where a delay of 1 ms may move a channel across the switching, and those after a
+  /// switching whose frequency was replaced (drop_peaks). Empty: all are compared.
   std::vector<char> left_out = {};
-  std::vector<playin::Output> channels = {};  ///< compared channels: P, Q, then speed, Efd, Ifd if recorded
+  std::vector<playin::Output> channels = {};  ///< compared channels, see playin::compared_outputs()
   KeptCurve kept = {};  ///< cached curve of played() with `switchings`, see keep_curve()
   /// Caches the voltage curve of an event that does not change any more. An invalid voltage is not cached;
   /// play() then reports the reason.

@@ -63,8 +63,9 @@ playin::OperatingPoint start_at(const FitEvent& event, const EventState& state);
 playin::Response play(const sim::plant::PlantUnderTest& tested, const FitEvent& event,
                       const EventState& state, std::span<const playin::SensitivityParameter> along = {},
                       const Playing& how = {});
-/// Returns the responses of several plants that differ in parameter values only, computed in SIMD batches of
-/// eight (playin::simulate_playback_batch). An entry is empty if play() would throw.
+/// Returns the responses of several plants that differ in parameter values only. Plants without instruments
+/// are simulated in SIMD batches of eight (playin::simulate_playback_batch), others one by one. An entry is
+/// empty if play() would throw.
 std::vector<std::optional<playin::Response>> play_together(std::span<const sim::plant::Plant> plants,
                                                            const sim::Conventions& conventions,
                                                            const FitEvent& event, const EventState& state,

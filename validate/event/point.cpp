@@ -45,7 +45,7 @@ std::vector<Collector> read_collector(Config& c) {
   return all;
 }
 
-/// Reads the unit's part of the power. The unit under test has the remainder and needs no entry.
+/// Reads the unit's part of the power. The unit under test has the remainder; its part is not used.
 OtherUnit read_part(Config& c, const std::string& at) {
   OtherUnit unit;
   unit.share = c.optional<double>(at + ".share", 0.0, {1e-6, 1.0, "", "share of P and Q before the event"});
@@ -285,13 +285,13 @@ Eigen::VectorXd bounded_step(const Eigen::MatrixXd& jacobian, Eigen::VectorXd le
   return step;
 }
 
-/// Fits the switching times within their sample intervals, and the phase jumps of an integrated angle, to the
+/// Fits the switching times within their uncertainties, and the phase jumps of an integrated angle, to the
 /// power of all units (Gauss-Newton). An error of half an interval at 60 samples/s would cause an error of
 /// several per cent of the units' power during a fault.
 EventState fit_switching_times(const std::vector<PreparedUnit>& units, const record::Record& whole) {
   constexpr int kPointRounds = 8;
   constexpr double kAside = 0.02,
-                   kPointSettled = 1e-4;  // fraction of half a sample interval, or of kFarthestTurn
+                   kPointSettled = 1e-4;  // fraction of a time's uncertainty, or of kFarthestTurn
   const auto& switchings = units[0].event.switchings;
   const auto n = static_cast<Eigen::Index>(switchings.size() * (units[0].event.turns() ? 2 : 1));
   const auto state_at = [&](const Eigen::VectorXd& at) {
@@ -325,7 +325,7 @@ EventState fit_switching_times(const std::vector<PreparedUnit>& units, const rec
 }
 
 /// Returns the models of the other units, then of the tested unit. Their controls that measure at another bus
-/// are set to measure at the point.
+/// are set to measure at the point, except those of another unit whose power is given by P and Q.
 std::vector<plant::PlantModel> models_at(const MeasuredPoint& point) {
   std::vector<plant::PlantModel> models;
   for (const OtherUnit& unit : point.others) {
