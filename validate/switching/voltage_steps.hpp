@@ -30,7 +30,7 @@ class VoltageSteps {
 
   /// Finds switchings, also if a filter has spread their steps over two or three sample intervals. With
   /// StepShape::filtered, the neighbours of sharp steps are marked as filtered too; with StepShape::sharp, a
-  /// step over several intervals is interpreted as a swing and ignored.
+  /// step over several intervals is interpreted as a swing and ignored, unless one interval dominates.
   [[nodiscard]] SwitchingTimes find(double threshold, StepShape shape) const;
 
   /// Returns the shape of the record's first step; `either` if the step is not conclusive. The window of a
