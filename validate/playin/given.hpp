@@ -11,10 +11,11 @@ namespace swingbank::validate::playin {
 /// initial values.
 class Given {
  public:
-  /// Constructs the splines; `played` is the record without samples that are not played in.
+  /// Constructs the splines through all samples of the record `played`.
   Given(const record::Record& played, const std::vector<Switching>& switchings, const OperatingPoint& start);
 
-  /// Signals at t [s] on the record's base: deviations from the initial values, except for P and Q.
+  /// Signals at t [s], powers and Pref on the record's base: deviations from the initial values, except for P
+  /// and Q.
   struct At {
     double P = 0, Q = 0, speed = 0, Ifd = 0, Vs = 0, Vref = 0, Efd = 0, Pm = 0, Pref = 0;  ///< [pu]
   };

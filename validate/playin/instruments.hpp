@@ -13,8 +13,8 @@ namespace swingbank::validate::playin {
 ///
 /// Sensitivity parameters may include parameters of the instruments, whose blocks follow those of
 /// sim::plant::block_parameters(). Their sensitivities are central differences of the instruments' outputs
-/// for one run of the plant. If the parameter changes the gain for constant phasors, they are central
-/// differences of whole runs. Throws InputError as simulate_playback().
+/// for one run of the plant. If the parameter changes the gain for constant phasors or the lag of the angle,
+/// they are central differences of whole runs. Throws InputError as simulate_playback().
 Response observe(const PlaybackRun& run, std::span<const SensitivityParameter> parameters = {});
 
 /// Returns whether the effect of an instrument with parameters away from their null values can be removed.

@@ -17,8 +17,8 @@ enum class Made { field, torque };
 class OpenLoop {
  public:
   /// A time of the response. The response covers `times` from the first switching time on (all if there is no
-  /// switching) and both sides of every switching time. Before the first switching time, the controls are in
-  /// steady state.
+  /// switching) and both sides of every later switching time. Before the first switching time, the controls
+  /// are in steady state.
   struct TimePoint {
     double t;     ///< [s]
     int segment;  ///< of the voltage curve

@@ -19,7 +19,7 @@ struct OperatingPoint {
   int samples = 0;      ///< length of the pre-event window, from the record's first sample
   Complex voltage;      ///< at t = 0 of the record [pu]
   double P = 0, Q = 0;  ///< [pu on the record's base]
-  /// Recorded inputs of a component, on the record's base; speed as deviation from nominal.
+  /// Recorded inputs of a component, Pm and Pref on the record's base; speed as deviation from nominal.
   double Efd = 0, Ifd = 0, Pm = 0, speed = 0, Vs = 0, Vref = 0, Pref = 0;  ///< [pu]
   double drift = 0;  ///< rate of theta [rad/s]; 0 if it does not exceed the noise
 };

@@ -29,8 +29,7 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
 struct Playback {
   OperatingPoint start;                                 ///< operating point before the event
   std::vector<double> P, Q, speed, Efd, Ifd, Pm, gate;  ///< outputs [sample] [pu]
-  std::vector<double>
-      V;  ///< at the machine's terminal, or the plant's if P and Q are the inputs (play_in_power)
+  std::vector<double> V;      ///< at the plant's terminal, the grid side of a step-up transformer
   std::vector<double> theta;  ///< if P and Q are the inputs; unwrapped [rad]
   int steps = 0;              ///< number of integration steps
 };

@@ -193,7 +193,7 @@ class PlaybackEquations {
       if (d.kind == Kind::speed) Seeds<T>::add(x0[1], i, d.scale);
     });
   }
-  /// Finds the governor's state that is its gate or valve.
+  /// Finds the governor's state that is its gate, valve or fuel flow.
   void find_gate() {
     std::size_t state = run_.plant->machine.effect->states.size();
     for (const auto& block : run_.plant->controls)
