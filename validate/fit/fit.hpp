@@ -67,7 +67,7 @@ struct Fit {
   /// structure. Such a reduction is no evidence, so data_cost() and criterion() add it back. The value is 0
   /// before correct_noise_transfer().
   double transfer_deficit = 0;
-  int iterations = 0;      ///< number of iterations
+  int iterations = 0;      ///< number of successful steps; at least one is counted for each search
   bool converged = false;  ///< whether the search ended at a minimum
   std::string failed;      ///< reason why the start could not be evaluated; empty: it was evaluated
   /// Returns the reduced chi-square of all events: chi2 divided by the number of compared values [-].
@@ -98,9 +98,9 @@ double data_cost(const Fit& f);
 void correct_noise_transfer(const noise::NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
                             Fit& fit);
 
-/// Returns the reduction of `cost` between two fits; negative if the cost rises. Every comparison of two fits
-/// uses this function. Throws std::logic_error if the fits have different noise models, because their costs
-/// then have different units. A failed fit has infinite cost in any unit.
+/// Returns the reduction of `cost` between two fits; negative if the cost rises. Throws std::logic_error if
+/// the fits have different noise models, because their costs then have different units. A failed fit has
+/// infinite cost in any unit.
 double gain(const Fit& from, const Fit& to, double (*cost)(const Fit&) = penalised);
 /// Returns the reduction of chi2 of one event between two fits.
 double gain(const EventFit& from, const EventFit& to);
@@ -117,20 +117,22 @@ struct Goal {
 
 /// Effort, tolerances and start of a fit.
 struct FitOptions {
-  int iterations = 60;               ///< maximum number of iterations
+  int iterations = 60;               ///< maximum number of successful steps
   double tolerance = kFitTolerance;  ///< tolerance of the integration (event::Playing)
   /// The search allows larger integration errors in states that hardly affect the compared channels
-  /// (event::Playing), and linearises the sensitivities. Secant updates (Broyden) correct the sensitivities
-  /// during the search. The final cost is computed without these larger errors, the standard errors with
-  /// them. A fit that cannot be evaluated at the start is repeated with this option.
+  /// (event::Playing). Secant updates (Broyden) correct the sensitivities during the search. The final cost
+  /// is computed without these larger errors, the standard errors with them. A fit that cannot be evaluated
+  /// at the start is repeated with this option.
   bool lenient = false;
   /// The fit is compared only with other brief fits. The final cost of a lenient fit is then computed with
   /// the larger integration errors too.
   bool brief = false;
-  bool steady_start = false;           ///< whether every event starts in its pre-event steady state
-  double enough = 1e-5;                ///< relative change of the cost that ends the fit
-  std::vector<EventState> start = {};  ///< start values of the event states; empty: those of the FitEvent
-  std::vector<double> values = {};     ///< start values of the free parameters; empty: the plant's
+  bool steady_start = false;  ///< whether every event starts in its pre-event steady state
+  double enough = 1e-5;       ///< relative change of the cost that ends the fit
+  /// Start values of the event states. Empty: those of the FitEvent; if a response diverges from its record,
+  /// its switching times are first fitted to the early part of the record.
+  std::vector<EventState> start = {};
+  std::vector<double> values = {};  ///< start values of the free parameters; empty: the plant's
   bool errors = true;  ///< whether to compute standard errors: one further evaluation of all sensitivities
   /// The fit ends early if it cannot reach this goal. The prediction assumes that every remaining step
   /// reduces the cost by the larger relative reduction of the last two steps.

@@ -19,7 +19,8 @@ using Set = std::vector<std::size_t>;  ///< indices of parameters, ascending
 
 constexpr std::size_t kBeam = 60;     ///< number of sets of each size in the beam
 constexpr std::size_t kRefitted = 3;  ///< number of sets of each size that are refitted
-/// Number of sets of the selected size that are refitted to find equivalent sets.
+/// Maximum number of sets of the selected size, and of the next larger size, that are refitted to find
+/// equivalent sets.
 constexpr std::size_t kTied = 6;
 
 constexpr double kExactly = 1e-6;  ///< relative prior standard deviation that represents a fixed value

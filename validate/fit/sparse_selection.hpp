@@ -46,7 +46,7 @@ struct SparseOptions {
   /// 88, 1993, p. 881). The returned fit keeps them at their given values.
   double right = 0.01;
   event::Progress progress = {};  ///< recipient of progress messages; empty: none
-  /// Called between sets. Returns whether to stop; no parameter is then named.
+  /// Called before each size of the set. Returns whether to stop; no parameter is then named.
   std::function<bool()> stop = {};
   /// A fit of every parameter to these events, with their noise model and with standard errors. If null,
   /// select_parameters() makes this fit and estimates the noise from its residual.

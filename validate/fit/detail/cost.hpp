@@ -64,7 +64,6 @@ class GaussianPrior : public ceres::CostFunction {
 /// gap between two parameters is below kMargin, or below their gap at the start if that is smaller. A start
 /// that violates an ordering is drawn back towards the ordering, unless the violation may be intended
 /// (Ordering::may_be_meant).
-/// (Ordering::may_be_meant).
 class Walls : public ceres::CostFunction {
  public:
   Walls(const Setting& setting, const double* discrepancy) : setting_(setting), discrepancy_(discrepancy) {
