@@ -1,6 +1,7 @@
 #pragma once
 // Hypotheses on missing effects: every effect of a library in a free slot, every group of parameters at their
-// null values, every measurement fault, every convention. In addition, a control in a slot that holds one
+// null values, every linear measurement fault, the speed-voltage convention, every switch of a converter's
+// controls. In addition, a control in a slot that holds one
 // effect may be replaced by every other effect of this slot. The code lists no effect by name, so a new
 // effect is included automatically.
 #include <string>
