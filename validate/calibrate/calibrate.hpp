@@ -26,7 +26,7 @@ struct CalibrateOptions {
   std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
   std::vector<std::string> fixed;     ///< names of fixed parameters, e.g. "GENROU.Xl"
   std::vector<GivenStart> given;      ///< starts in addition to the model's own values and the draws
-  bool only_given = false;            ///< whether to use only `given` as starts, without further events
+  bool only_given = false;            ///< whether to use only `given` and draws, without further events
   std::vector<fit::FreeParameter> free = {};  ///< free parameters with priors; empty: chosen_parameters()
   /// Smallest limit of the reduced chi-square. It allows for interpolation errors of the played-in voltage.
   double adequate = thresholds::adequacy.reduced_chi2;
@@ -167,7 +167,7 @@ double unseen_allowance(const Eigen::MatrixXd& information, const Eigen::MatrixX
 std::string residual_text(const std::vector<EventScore>& events);
 
 /// Returns the reduced chi-square and channel errors of one event before and after the calibration. Both fits
-/// must use the noise of `event`; otherwise throws std::logic_error.
+/// must use the noise of `event`. Throws std::logic_error if their noise models differ from each other.
 EventScore score_event(noise::WhitenedEvent event, const fit::EventFit& before, const fit::EventFit& after,
                        bool seen, int pre_event, double least);
 
