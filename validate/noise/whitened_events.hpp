@@ -11,7 +11,7 @@
 
 namespace swingbank::validate::noise {
 
-/// References to one event and its noise, both owned by WhitenedEvents.
+/// References to one event and its noise, which must outlive it.
 struct WhitenedEvent {
   const event::FitEvent& event;  ///< event with its record
   const EventNoise& noise;       ///< noise of its channels
