@@ -99,7 +99,7 @@ class Solver {
  private:
   struct SwitchingTime {
     double time;
-    int switching;  ///< index in the curve; -1: of an effect
+    int switching;  ///< index in the curve; -1: of an effect or a staged event
   };
 
   void collect_switching_times() {

@@ -111,10 +111,11 @@ struct Response {
   [[nodiscard]] const std::vector<double>& of(Output o) const { return value[static_cast<int>(o)]; }
 };
 
-/// Returns the plant's response to the curve. Steps end at every sample, at every switching of the curve, and
-/// at every switching time of an effect. If a switching time is a sensitivity parameter, the sensitivities to
-/// this time have a step there, equal to the difference of the derivatives before and after it. Throws
-/// InputError if the operating point has no steady state or the integration fails.
+/// Returns the plant's response to the curve. Steps end at every sample, at every switching of the curve, at
+/// every switching time of an effect, and at the start and end of every staged event. If a switching time is
+/// a sensitivity parameter, the sensitivities to this time have a step there, equal to the difference of the
+/// derivatives before and after it. Throws InputError if the operating point has no steady state or the
+/// integration fails.
 Response simulate_playback(const PlaybackRun& run, std::span<const SensitivityParameter> parameters = {});
 
 /// Inputs of a plant's controls at one point of a run, at the machine's terminal and on its base.
@@ -142,7 +143,7 @@ struct LinearPlant {
 /// Linearises the plant about the run's start. Throws InputError if the operating point has no steady state.
 LinearPlant linearise(const PlaybackRun& run);
 /// Returns the derivative of each state's rate of change with respect to the run's torque or field, at the
-/// start [1/s per pu]. Throws as linearise().
+/// start [1/s per pu]; zero if the run has neither of these inputs. Throws as linearise().
 Eigen::VectorXd rates_by_input(const PlaybackRun& run, SensitivityParameter::Kind input);
 
 }  // namespace swingbank::validate::playin

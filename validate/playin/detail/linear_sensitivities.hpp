@@ -9,7 +9,8 @@
 
 namespace swingbank::validate::playin {
 
-/// Trajectory of a run without sensitivities: every step and sample, and both sides of every switching time.
+/// Trajectory of a run without sensitivities: every step and sample, and both sides of every switching time
+/// and of every discontinuity of the equations.
 struct Trace {
   /// A guard function (zero at a discontinuity of the equations) that passes zero just after a node, with its
   /// rate [1/s].
@@ -20,8 +21,9 @@ struct Trace {
   struct Node {
     double t;  ///< [s]
     Side side;
-    enum class Kind { sample, step, before, after } kind;  ///< the last two: sides of a switching time
-    int switching;                                         ///< index in the curve; -1: of an effect
+    /// The last two kinds are the sides of a switching time or of a discontinuity.
+    enum class Kind { sample, step, before, after } kind;
+    int switching;  ///< index of a switching in the curve; -1: none
     Passed passed = {};
   };
   std::vector<Node> nodes;
