@@ -39,8 +39,8 @@ struct FittedParameter {
   FreeParameter where;            ///< the parameter, with its prior
   std::string block, name, unit;  ///< names of block and parameter; unit
   double start = 0, value = 0;    ///< value before and after the fit [unit]
-  double error = 0;               ///< standard error from the curvature [unit]; NaN if the fit is singular
-  double low = 0, high = 0;       ///< bounds of the 95 % interval [unit], within physical limits
+  double error = 0;          ///< standard error from the curvature [unit]; NaN if singular or not computed
+  double low = 0, high = 0;  ///< bounds of the 95 % interval [unit], within physical limits
   /// Whether the value is at the end of its range or at an ordering constraint (X''d > Xl). The 95 % interval
   /// is then not valid.
   bool at_bound = false;
@@ -59,7 +59,7 @@ struct Fit {
   std::vector<EventFit> events;             ///< fits of the events, in their order
   noise::NoiseModel noise;                  ///< noise model in which chi2 is computed
   double chi2 = 0, prior_cost = 0;          ///< chi2 of the data; chi2 of the priors
-  int values = 0, fitted = 0;  ///< number of compared values; number of free variables, event states included
+  int values = 0, fitted = 0;  ///< number of compared values; number of variables, also fixed event states
   /// Log determinant of the posterior precision in units of the priors' precision (Occam factor). A parameter
   /// that the records do not determine contributes 0. NaN if the fit computed no standard errors.
   double occam = 0;
