@@ -1,8 +1,9 @@
 #pragma once
 // Baseline: plain least squares of P and Q from the model's own values, as parameter derivation tools do it
-// (EPRI's PPPD, MATLAB's lsqnonlin). It shares only the model, its instruments and the playback with
-// `calibrate`. Detected switching times lie half-way between samples, and every event starts at its pre-event
-// mean. All samples have equal weight. There are bounds but no priors, and there is one start.
+// (EPRI's PPPD, MATLAB's lsqnonlin). It shares only the model, its instruments, the preparation and
+// scores of events, and the playback with `calibrate`. Detected switching times lie half-way between samples,
+// and every event starts at its pre-event mean. All samples have equal weight. There are bounds but no
+// priors, and there is one start.
 #include <functional>
 #include <string>
 #include <vector>
