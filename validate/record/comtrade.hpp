@@ -31,7 +31,7 @@ struct Comtrade {
   std::string station, device;             ///< names of the station and of the recorder
   int revision = 0;                        ///< 1991, 1999 or 2013
   double nominal = 0;                      ///< nominal frequency of the grid [Hz]
-  std::string start;                       ///< date and time of the first sample, as written
+  std::string start;                       ///< date and time of the first sample, with the day first
   std::string kind;                        ///< "ASCII", "BINARY", "BINARY32" or "FLOAT32"
   std::vector<double> t;                   ///< [s]; 0 at the file's first sample
   std::vector<ComtradeStretch> stretches;  ///< in order; empty if time stamps determine the times
@@ -48,8 +48,9 @@ struct Comtrade {
 
 /// Returns the record of a configuration and its data; messages contain the names of the two files. Notes
 /// report each contradiction that was resolved: data type, number of samples, truncated last sample, overflow
-/// of the time stamps. Throws InputError with every fault of both files and its line or byte: unknown
-/// revisions, invalid numbers, gaps in the sample numbers, a rate and stamps in different units.
+/// of the time stamps. Throws InputError with every fault of the configuration or, if it has none, of the
+/// data, each with its line or byte: unknown revisions, invalid numbers, gaps in the sample numbers, a rate
+/// and stamps in different units.
 Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::string& cfg_name,
                         const std::string& dat_name);
 

@@ -32,8 +32,8 @@ enum class AngleSource { measured, integrated, none };
 enum class Component {
   plant,     ///< inputs V and its angle; P and Q are compared
   exciter,   ///< input V, with Vs, Ifd and other signals that its blocks need; Efd is compared
-  governor,  ///< input speed, with Pref; Pm or the gate is compared
-  machine,   ///< inputs V, its angle, Efd and Pm; P, Q and Ifd are compared
+  governor,  ///< input speed, with Pref; Pm and the gate are compared
+  machine,   ///< inputs V, its angle, Efd and Pm; P, Q, speed and Ifd are compared
 };
 /// Returns the name of a component, "exciter".
 std::string_view component_name(Component component);
@@ -65,7 +65,7 @@ struct StagedEvent {
 /// Samples at one terminal. All vectors have the length of `t`; optional channels are empty if not recorded.
 struct Record {
   std::string name;                  ///< file name without folder
-  std::string sha256;                ///< SHA-256 of the file's bytes (COMTRADE: .cfg, then .dat)
+  std::string sha256;                ///< SHA-256 of the bytes (.cfg, then .dat), or of several files' hashes
   RecordBase base;                   ///< bases of the per-unit values
   std::vector<double> t;             ///< [s], increasing, uniform
   std::vector<double> V, theta;      ///< [pu], [rad] (unwrapped)
@@ -106,7 +106,7 @@ struct Record {
   [[nodiscard]] bool open_circuit() const {
     return breaker() && breaker()->kind == StagedEvent::Kind::open_circuit;
   }
-  /// Returns the time of the first staged event [s]; infinity if there is none.
+  /// Returns the time of the first staged event other than open_circuit [s]; infinity if there is none.
   [[nodiscard]] double first_staged() const;
   /// Returns the number of samples.
   [[nodiscard]] int samples() const { return static_cast<int>(t.size()); }

@@ -13,7 +13,8 @@ struct Across {
   double step = 0;             ///< step in the gap; 0 if the criterion prefers a smooth polynomial
 };
 /// Interpolates at the abscissae `inside` from the values `value` at the abscissae `at` on both sides. The
-/// abscissae range from about -1 to 1, with 0 in the middle of the gap. Requires at least kMinAcross values.
+/// abscissa 0 is the middle of the gap, and the unit is about the width of the samples used on one side.
+/// Requires at least kMinAcross values.
 Across across(const std::vector<double>& at, const std::vector<double>& value,
               const std::vector<double>& inside);
 constexpr std::size_t kMinAcross = 6;

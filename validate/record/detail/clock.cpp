@@ -13,7 +13,7 @@ constexpr double kDay = 86400;
 
 /// Clock that counts from a known date.
 struct Clock {
-  double from, until;  ///< range of values: 1985 to 2128 for ticks, 1982 to 2100 for days
+  double from, until;  ///< range of values: 1985 (ns: 1992) to 2128 for ticks, 1982 to 2100 for days
   Unit unit;
   double origin;  ///< count at 1970-01-01 [days]
   std::string_view what;

@@ -14,8 +14,9 @@ namespace swingbank::validate::record {
 /// line-to-neutral unit. Returns no value for any other heading.
 std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string_view unit);
 
-/// Clears the meaning of unneeded phase columns: incomplete sets, all phases of a quantity whose positive
-/// sequence the file contains, and currents if it contains P and Q.
+/// Clears the meaning of unneeded phase columns: incomplete sets, line-to-line voltages beside complete
+/// voltages to neutral, all phases of a quantity whose positive sequence the file contains, and currents if
+/// it contains P and Q.
 void keep_needed_phases(std::vector<Heading>& headings);
 
 /// Returns true if the unit of a column can be inferred from its values: for magnitudes and angles of three

@@ -9,7 +9,7 @@ struct Stamp {
   long day = 0;           ///< days since 1970-01-01; 0 for a time of day without a date
   double second = 0;      ///< seconds since midnight [s]
   double resolution = 1;  ///< rounding of the seconds [s]
-  bool zoned = false;     ///< the text names a zone, and day and second are UTC
+  bool zoned = false;     ///< the text states UTC or an offset from it, and day and second are UTC
   bool in_hour = false;   ///< only minutes and seconds, as spreadsheets display times ("56:20.0")
 };
 

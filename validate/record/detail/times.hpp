@@ -23,8 +23,8 @@ struct EvenRows {
 };
 
 /// Returns the uniform grid of the rows' times, which must increase by a constant step within 1 %. The
-/// tolerance covers rounding to 0.1 ms at 120 samples/s. Times rounded more coarsely (`resolution`, at most
-/// 0.75 of a step) are replaced by a uniform grid, if they fit one. The function repairs missing frames,
+/// tolerance covers rounding to 0.1 ms at up to 100 samples/s. Times rounded more coarsely (`resolution`, at
+/// most 0.75 of a step) are replaced by a uniform grid, if they fit one. The function repairs missing frames,
 /// repeated stamps, clock adjustments (up to 1.5 s, or multiples of half an hour), and a few rows off the
 /// grid. Repairs are noted in about.notes. Rows with the variable steps of a simulation are resampled.
 /// Everything else is a fault.

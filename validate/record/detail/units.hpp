@@ -8,8 +8,8 @@ namespace swingbank::validate::record {
 
 enum class Quantity { time, V, theta, f, P, Q, speed, Efd, Ifd, I, phi, Vs, Vref, Pm, Pref, gate };
 constexpr int kQuantities = 16;
-/// Returns whether only records of a component (exciter, governor) use the quantity. Records of a plant
-/// ignore its column.
+/// Returns whether only records of a component (exciter, governor, machine) use the quantity. Records of a
+/// plant ignore its column.
 constexpr bool is_inner(Quantity q) { return q >= Quantity::Vs; }
 enum class Unit {
   second,
