@@ -164,9 +164,9 @@ struct Document {
   std::vector<Block> blocks = {};  ///< parts in order
   /// Appends a block.
   void add(Block block) { blocks.push_back(std::move(block)); }
-  /// Appends a heading of the first level.
+  /// Appends the heading of a section.
   void section(std::string text) { add(Heading{std::move(text)}); }
-  /// Appends a heading of the second level.
+  /// Appends a heading below that of a section.
   void subsection(std::string text) { add(Heading{std::move(text), 3}); }
   /// Appends a paragraph; nothing if it is empty.
   void text(std::string paragraph) {
@@ -184,7 +184,7 @@ struct Document {
 /// Returns a self-contained page: it fetches nothing, works on telephones and in print, and contains scripts
 /// only if it has curves or sortable tables. All texts are escaped; SVG is not.
 std::string html(const Document& document);
-/// Returns the document as Markdown, without curves, bars, scatter plots and data.
+/// Returns the document's headings, paragraphs, tables, facts and pictures with a file as Markdown.
 std::string markdown(const Document& document);
 
 /// Returns the table as Markdown.

@@ -60,8 +60,8 @@ struct RunResult {
 };
 
 /// Reads every *.json of the folders in the order of their names. Throws InputError with every error of every
-/// file: not JSON, missing or mistyped keys, values that are not finite, two different results of one run, or
-/// a folder without results.
+/// file: not JSON, missing or mistyped keys, values that are not finite, two results of one run, or a folder
+/// without results.
 std::vector<RunResult> read_results(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace swingbank::validate::report

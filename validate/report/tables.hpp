@@ -9,7 +9,7 @@
 
 namespace swingbank::validate::report {
 
-/// Runs of one table with the same network, preset, dataset, noise level and seed.
+/// Runs of one table with the same network (in Table IV: any network), preset, dataset, noise level and seed.
 struct TableBlock {
   std::string table, network, preset, dataset;  ///< common properties of the runs
   std::int64_t rows = 0, seed = 0;              ///< rows of the dataset; seed of the runs
@@ -32,7 +32,7 @@ inline constexpr const char* kPictureFolder = "tables";
 /// Tables of the results as Markdown, page and CSV.
 struct TablesReport {
   std::string markdown, html;                            ///< same content; only the page embeds the pictures
-  std::vector<std::pair<std::string, std::string>> csv;  ///< file name, content: one per table with results
+  std::vector<std::pair<std::string, std::string>> csv;  ///< name, content: two per TableBlock, one per task
   std::vector<std::pair<std::string, std::string>> pictures;  ///< SVG, in kPictureFolder
 };
 /// Builds the report; `sources` is its provenance.

@@ -1,7 +1,7 @@
 // Charts of curves against time, shared by the live page and the reports.
 /* exported curves */
 const curves = (() => {
-  /** Returns a colour of palette.css by its name. */
+  /** Returns a colour of shared.css by its name. */
   const colour = (name) =>
     getComputedStyle(document.documentElement)
       .getPropertyValue("--" + name)

@@ -11,16 +11,16 @@ inline constexpr const char* kCellMeaning =
     "there is one, to the floor (the Bayesian Cramér-Rao bound, averaged over the prior; the MSE over a finite set "
     "of test events scatters around it, so ratios below 1 occur). ¹ one seed, ² two seeds.";
 
-/// Overview tables with at most three tasks as columns, the thesis's tables first. Rows: the thesis, the best
-/// network, methods without training, and the floor.
+/// Overview tables with at most three tasks as columns, the thesis's tables first. Rows: the thesis,
+/// predict-the-mean, the best network, methods without training, and the floor.
 std::vector<Table> overview_tables(const std::vector<Task>& tasks);
 /// One row per method, one column per noise level, and the figures of the thesis's own methods.
 Table method_table(const Task& task);
 /// One row per excluded generator, one column per method, at one noise level.
 Table generator_table(const Task& task, double noise);
-/// Table of generalisation ratios with the rows and columns of generator_table(): MSE on the excluded
-/// generator / MSE on validation rows of the training generators, mean over seeds. No rows if nothing was
-/// trained.
+/// Table of generalisation ratios with one row per excluded generator and one column per trained method: MSE
+/// on the excluded generator / MSE on validation rows of the training generators, mean over seeds. No rows if
+/// nothing was trained.
 Table unseen_table(const Task& task, double noise);
 /// One row per parameter with raw and relative error of each method, at one noise level.
 Table parameter_comparison(const Task& task, double noise);
