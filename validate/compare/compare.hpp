@@ -47,7 +47,7 @@ struct EventComparison {
   bool fitted = false;                      ///< switching times were fitted within their sample intervals
   std::vector<Window> windows;              ///< evaluation windows, in order of time
   playin::Playback playback;                ///< response of the model
-  std::vector<ChannelComparison> channels;  ///< P, Q or V, frequency; speed, Efd, Ifd where recorded
+  std::vector<ChannelComparison> channels;  ///< P, Q or V, frequency; speed, Efd, Ifd, Pm, gate, if recorded
   /// 1 for samples that are not compared: lost samples, and samples within a step that the instrument
   /// filtered. Empty: all samples are compared.
   std::vector<char> left_out = {};

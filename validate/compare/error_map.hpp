@@ -10,7 +10,7 @@ namespace swingbank::validate::compare {
 
 /// Time window from < t <= to; the first one includes its start.
 struct Window {
-  std::string name;  ///< "pre-fault", "fault", "post-fault", ...
+  std::string name;  ///< "pre-event", "fault", "0–1 s after", ...
   double from, to;   ///< [s]
 };
 
@@ -39,7 +39,7 @@ ChannelNoise estimate_noise(std::span<const double> quiet, double floor);
 
 /// Time-frequency bin of an error map.
 struct TimeFrequencyBin {
-  /// Number of independent components; 0: the window is too short for the band.
+  /// Number of independent components; 0: the window is too short for the band, or is left out.
   int values = 0;
   double rms = 0;  ///< RMS of the residual's components in window and band [pu]
   /// Normalised RMS: square root of the mean of \f$ c_k^2 / \mathrm{var}(c_k) \f$ over the components, with
@@ -47,7 +47,7 @@ struct TimeFrequencyBin {
   /// contains only a part of the noise.
   double normalised = std::numeric_limits<double>::quiet_NaN();
   double bound = std::numeric_limits<double>::quiet_NaN();  ///< noise limit of `normalised`; see set_bounds()
-  /// Whether the window is too short for the band.
+  /// Whether the window is too short for the band, or is left out.
   [[nodiscard]] bool empty() const { return values == 0; }
   /// Returns the RMS that noise alone may reach [pu].
   [[nodiscard]] double allowed() const { return normalised > 0 ? rms / normalised * bound : 0.0; }

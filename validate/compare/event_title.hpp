@@ -7,7 +7,7 @@
 
 namespace swingbank::validate::compare {
 
-/// Returns a title that names the fault (without a fault: the staged tests or switchings) and the change of
+/// Returns a title that names the fault or, without a fault, the staged tests or switchings and the change of
 /// frequency.
 std::string event_title(const EventComparison& e);
 /// Returns a hint to use --until if the record continues for 120 s or more after its last switching;
