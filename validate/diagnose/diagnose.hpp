@@ -1,7 +1,7 @@
 #pragma once
 // Diagnosis of the physical effect that a model lacks. The missing input (torque or field voltage) is
-// inferred first and shows the side at fault. Every hypothesis is then fitted alone and judged on events that
-// its fit excludes.
+// inferred first and shows the side at fault. The hypotheses are then tried one at a time, and the leading
+// ones are judged on events that their fits exclude.
 #include <functional>
 #include <optional>
 #include <string>
@@ -21,8 +21,8 @@ namespace swingbank::validate::diagnose {
 /// Verdict of a diagnosis.
 enum class Verdict {
   adequate,     ///< the residual is noise
-  missing,      ///< one effect is missing and named
-  confusable,   ///< several effects explain the records; their probabilities sum to 95 %
+  missing,      ///< one effect, or one pair of effects, is missing and named
+  confusable,   ///< several effects explain the records; their probabilities sum to at least 95 %
   unexplained,  ///< no known effect explains the records
   interrupted,  ///< stopped by the user; no hypothesis is judged
 };
@@ -66,8 +66,8 @@ struct DiagnoseOptions {
   int leading = 9;                     ///< maximum number of hypotheses that are judged on held-out events
   int firsts = 2;            ///< number of first effects of pairs, if no hypothesis is accepted alone
   event::Progress progress;  ///< recipient of progress messages; empty: none
-  /// Called with each preliminary result (the residual, the side, then the leading hypothesis) and the
-  /// diagnosis so far. May be empty.
+  /// Called with each preliminary result (the residual, a small set of wrong parameters, the side, then the
+  /// leading hypotheses) and the diagnosis so far. May be empty.
   std::function<void(const std::string& sentence, const Diagnosis& so_far)> preliminary_result = {};
   /// Returns whether the user has asked to stop. Completed fits are kept if the fit of the given model is
   /// among them. May be empty.

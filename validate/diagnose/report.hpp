@@ -38,8 +38,8 @@ struct ReportFigures {
 const reduced::FreeInput* better_input(const Diagnosis& diagnosis);
 
 /// Returns the figures. `after` is the best hypothesis if one was accepted, otherwise the user-defined model
-/// that was found, otherwise the inferred input with the lower chi2. Refers to `diagnosis`, which must
-/// outlive the result.
+/// that was found, otherwise, if nothing explains the records, the inferred input with the lower chi2. Refers
+/// to `diagnosis`, which must outlive the result.
 ReportFigures report_figures(const Diagnosis& diagnosis);
 
 /// Returns verdict, evidence, parameters and error maps, without samples.
@@ -57,8 +57,8 @@ std::vector<compare::Played> play_models(const plant::PlantModel& model, const D
                                          const thresholds::Acceptance& by,
                                          const compare::CompareOptions& options = {});
 
-/// Returns the command that follows the diagnosis: `add` with the effects that it names, or `calibrate`.
-/// Empty if no effect is named.
+/// Returns the command that follows the diagnosis: `calibrate` if the model is adequate, otherwise `add` with
+/// the effects that it names. Empty if it names none.
 std::string next_command(const Diagnosis& diagnosis, const report::Provenance& provenance);
 
 /// Returns command line, version, model, default parameter values and records.
