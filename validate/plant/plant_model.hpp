@@ -1,6 +1,6 @@
 #pragma once
 // Model of one plant for the commands that use records: a .toml file that names the effects and every
-// parameter, or one generator of a PSS/E grid.
+// parameter, or one generator of a grid case (PSS/E, PSLF or MATPOWER).
 #include <cstdint>
 #include <filesystem>
 #include <optional>
