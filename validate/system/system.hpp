@@ -41,7 +41,7 @@ struct SystemCase {
   std::vector<SystemTerminal> terminals;
 };
 /// Reads a system file (configs/systems/README.md), its grid and every record. Throws InputError with every
-/// error of each of them.
+/// error of the file and the grid or, if there is none, of the records and the event.
 SystemCase load_system(const std::filesystem::path& file);
 /// Returns the JSON Schema of system files.
 std::string system_schema();

@@ -24,7 +24,7 @@ struct SystemRun {
 constexpr int kFine = 8;
 
 /// Simulates the event and applies the terminals' instruments. Throws InputError as run_reference(), if the
-/// run ends early, and if a voltage of zero leaves an instrument's current undefined.
+/// integration fails before the end, and if a voltage of zero leaves an instrument's current undefined.
 SystemRun run_system(const SystemCase& system, const sim::network::Event& event);
 
 /// Returns the switching times of the event, sorted [s].
@@ -55,10 +55,11 @@ inline sim::network::Event moved(const sim::network::Event& event, const std::ve
   });
 }
 
-/// Estimates the event's switching times. Voltage steps determine each time within half a sampling interval.
-/// Within this uncertainty the times are fitted to V, P and Q of every terminal, up to one second after the
-/// last switching. A wrong model thus cannot move them further. Sets `uncertainty` [s]. Throws InputError if
-/// no record has as many voltage steps as the event has switching times.
+/// Estimates the event's switching times. Voltage steps determine each time within half a sampling interval
+/// or, behind a filter, within half the width of the filtered step. Within this uncertainty the times are
+/// fitted to V, P and Q of every terminal, up to one second after the last switching. A wrong model thus
+/// cannot move them further. Sets `uncertainty` [s]. Throws InputError if no record has as many voltage steps
+/// as the event has switching times.
 std::vector<double> estimate_switching_times(const SystemCase& system, double& uncertainty);
 
 /// Returns a warning if a record has as many voltage steps as there are switching times, but at other times;
