@@ -13,7 +13,7 @@ struct UserModelShape {
   enum class Kind { once, wave, sine };  ///< wave: zero phase at the start; sine: any phase
   Kind kind = Kind::once;
   std::string family;
-  /// Output [-] at time tau since the start; b: second parameter.
+  /// Output [-] at time tau since the start, of a sine its envelope; b: second parameter.
   std::function<double(double tau, double b)> time_series;
   std::vector<double> grid = {};  ///< values of b; empty: no second parameter
   UserModelParameter second = {};
