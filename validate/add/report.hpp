@@ -9,8 +9,8 @@
 
 namespace swingbank::validate::add {
 
-/// Returns the table of events (fit or verification) and channels: RMS error in MW or Mvar and reduced
-/// chi-square of the given model, refitted without the effect, and with it.
+/// Returns the table of events (fit or verification): reduced chi-square of the given model, refitted without
+/// the effect, and with it, and the limit.
 report::Table addition_table(const Addition& a);
 /// Returns the result as text for the terminal.
 std::string terminal_report(const Addition& a);
