@@ -21,7 +21,7 @@ using Emit = std::function<void(const nlohmann::json& message)>;
 
 /// Runs the fit of a request. Its members are "kind" (one of diagnose, add, calibrate), "plant"
 /// (plant_json()), "effect" (of add) and "held_out". On a stop signal, a diagnosis sends its result so far;
-/// any other fit sends "failed".
+/// any other fit sends a step with the values that it has reached, or "failed" if there are none.
 void run_fit(const Setup& setup, const nlohmann::json& request, const Emit& emit);
 
 /// Returns effects, values and conventions of a model's plant, exact to the last bit.

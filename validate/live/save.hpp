@@ -1,5 +1,5 @@
 #pragma once
-// Saving of a step: plant file, PSS/E records and report.
+// Saving of a step: plant file, PSS/E and PSLF records, and report.
 #include "base/output_folder.hpp"
 #include "validate/live/session.hpp"
 #include "validate/report/document.hpp"

@@ -80,7 +80,7 @@ class Session {
   [[nodiscard]] const Setup& setup() const { return *setup_; }  ///< inputs
   /// Returns a step. Throws InputError if there is none of that number.
   [[nodiscard]] std::shared_ptr<const Step> step(int number) const;
-  /// Returns the number of steps.
+  /// Returns the number of steps, including those that were dropped.
   [[nodiscard]] int steps() const;
   /// Returns the numbers of the steps that are kept, in ascending order.
   [[nodiscard]] std::vector<int> kept() const;
