@@ -32,8 +32,9 @@ struct RetrainSide {
 };
 
 /// Writes a dataset config with .raw and .dyr: the plant at the operating point of `event`, connected through
-/// three lines to a large machine. Each free parameter of the machine varies from value / range to
-/// value * range. Returns the config's path. Throws InputError if the plant has no .dyr form.
+/// three lines to a large machine. Each free parameter of the machine in its usual range varies from value /
+/// range to value * range, but not beyond its usual range. Returns the config's path. Throws InputError if
+/// the machine has no .dyr form, or if the conventions are neither psse nor andes.
 std::filesystem::path write_plant_grid(const std::filesystem::path& folder, const plant::PlantModel& model,
                                        const event::FitEvent& event, double range);
 
