@@ -76,7 +76,7 @@ struct Record {
   std::vector<double> Vs, Vref;      ///< optional: stabiliser output, voltage reference [pu]
   std::vector<double> Pm, Pref;      ///< optional: mechanical power, its reference [pu on base.mva]
   std::vector<double> gate;          ///< optional: opening of gate or valve [pu]
-  std::vector<std::string> ignored;  ///< columns of the file that were not read
+  std::vector<std::string> ignored;  ///< columns of unknown or unneeded quantities
 
   std::string format = "CSV";      ///< file format
   std::string terminal;            ///< name of the terminal, if the file names it
@@ -158,12 +158,12 @@ struct ReadOptions {
 /// Reads a record from its source. The extension determines the format: .cfg/.dat or .cff COMTRADE, .mat
 /// MATLAB, .h5 a run of `swingbank simulate`, .inf (or one of its .out) PSCAD, otherwise text columns
 /// (validate/record/README.md lists names, units and dialects). "FILE#TERMINAL" selects one of several
-/// terminals; "FILE+FILE" joins the columns of several files of one event. Columns that are not measurements
-/// of the terminal are listed in `ignored`. Repairs (short gaps, repeated stamps, clock adjustments) are
-/// listed in `notes`. check_record (validate/check/check.hpp) checks the content. Throws InputError with
-/// every fault of the file and its lines or bytes. Faults are missing or repeated columns, columns without
-/// unit, lines of unequal length and too few samples. Further faults are values that are not finite or
-/// missing for longer than kLongestGap, and times that do not increase or are unevenly spaced.
+/// terminals; "FILE+FILE" joins the columns of several files of one event. Columns of unknown or unneeded
+/// quantities are listed in `ignored`. Repairs (short gaps, repeated stamps, clock adjustments) are listed in
+/// `notes`. check_record (validate/check/check.hpp) checks the content. Throws InputError with every fault of
+/// the file and its lines or bytes. Faults are missing or repeated columns, columns without unit, lines of
+/// unequal length and too few samples. Further faults are values that are not finite or missing for longer
+/// than kLongestGap, and times that do not increase or are unevenly spaced.
 Record read_record(const Source& source, const RecordBase& base, const ReadOptions& options = {});
 
 /// Reads a record, with the staged events that apply to the file. If the breaker is open during the whole
