@@ -8,9 +8,10 @@
 
 namespace swingbank {
 
-/// Calls work(k) for k = 0 to n-1 on `threads` threads (0: one per core), in any order. After each task,
-/// calls done(number finished) or done(number finished, k) under a lock. Rethrows the first exception of a
-/// task after all tasks have ended; a task that throws does not count as finished.
+/// Calls work(k) for k = 0 to n-1 on `threads` threads, in any order. 0 threads: OpenMP's number, one per
+/// core unless OMP_NUM_THREADS or omp_set_num_threads gives another. After each task, calls done(number
+/// finished) or done(number finished, k) under a lock. Rethrows the first exception of a task after all tasks
+/// have ended; a task that throws does not count as finished.
 template <class Work, class Done>
 void in_parallel(std::size_t n, Work work, Done done, int threads = 0) {
   std::exception_ptr failure;

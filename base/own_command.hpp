@@ -1,6 +1,6 @@
 #pragma once
 // Execution of this build's other commands as separate programs. Thus calibrate and add need not link the
-// libraries of train and generate.
+// libraries of predict, train and generate.
 #include <unistd.h>
 
 #include <cerrno>
