@@ -19,8 +19,9 @@ struct Card {
   std::string config;  ///< text of the config, with the file names of `files`
   std::vector<CardFile> files;
   Overrides overrides;
-  std::string config_hash, kernel;             ///< as in dataset.json
-  std::map<std::string, std::string> made_by;  ///< by name: software, compiler, MPI, HDF5, host, processor
+  std::string config_hash, kernel;  ///< as in dataset.json
+  /// By name: software, compiler, mpi, hdf5, host, processor, system (operating system).
+  std::map<std::string, std::string> made_by;
 };
 
 /// Replaces every occurrence of a file name in quotes. Returns false if there is none.

@@ -26,8 +26,8 @@ class Sampler {
   /// generators 0 ... G - 1 get databank samples p G ... p G + G - 1. Calls in ascending order reuse the
   /// operating point of a block.
   [[nodiscard]] Draw draw(std::uint64_t sample_id);
-  /// Returns why the machines cannot be initialised at their operating point with these parameters; empty if
-  /// they can.
+  /// Returns why these parameters are inadmissible, or why the machines cannot be initialised at their
+  /// operating point with them; empty if neither.
   [[nodiscard]] std::string refusal(const Draw& draw) const;
 
  private:

@@ -32,7 +32,7 @@ struct ShardAttributes {
 struct RowBlock {
   std::size_t rows = 0, channels = 0, samples = 0, parameter_count = 0;
   ///< numbers of rows, channels, samples and parameters
-  std::vector<float> records;             ///< rows x channels x samples [pu on the machine's base, rad, pu/s]
+  std::vector<float> records;             ///< rows x channels x samples [pu on the machine's base, rad]
   std::vector<double> parameters;         ///< rows x parameters, in order of parameter_names
   std::vector<std::uint64_t> sample_id;   ///< rows
   std::vector<std::int32_t> generator;    ///< rows: bus number of the generator
@@ -59,7 +59,8 @@ constexpr std::size_t kRedrawnColumns = 2;  ///< no power flow, implausible
 /// Remedy for a damaged shard.
 constexpr const char* kRepairDataset =
     "run generate with --repair on the dataset: it generates the shard again";
-/// Outcome of a draw with inadmissible parameters, in /draws/outcome. The values 0 ... 3 are sim::Outcome.
+/// Outcome in /draws/outcome of a draw with inadmissible parameters, or with machines that cannot be
+/// initialised at their operating point. The values 0 ... 3 are sim::Outcome.
 constexpr std::uint8_t kRefused = 4;
 /// Returns the name of an outcome in /draws/outcome, for example "stable".
 std::string_view draw_outcome_name(std::uint8_t outcome);
@@ -70,7 +71,7 @@ struct ShardShape {
   ///< number of rows, channels, samples of a channel, and parameters
 };
 
-/// Arrays to read; the others remain empty.
+/// Optional arrays to read; those not chosen remain empty. All other arrays are always read.
 struct ShardFields {
   bool records = true, parameters = true, angle_valid = true, draws = true;
   ///< waveforms; parameter values; validity of the angle; draws
