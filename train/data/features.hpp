@@ -24,7 +24,8 @@ class Features {
  public:
   /// Fits the features on `rows`. pca_components = 0: no PCA. Series are normalised per channel; with PCA,
   /// per channel and component. The form "physics" is whitened, with pca_components components per channel.
-  /// The form "swing" is not changed. Throws InputError if a channel is constant over the rows.
+  /// The form "swing" is not changed. Without PCA and whitening, throws InputError if a channel is constant
+  /// over the rows.
   static Features fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                       std::size_t pca_components);
 

@@ -17,7 +17,7 @@ namespace swingbank::train::data {
 
 struct Labels {
   std::size_t rows = 0, parameters = 0;
-  std::size_t judged = 0;      ///< rows of the dataset itself; later rows are for training only
+  std::size_t judged = 0;      ///< rows of the dataset itself; later rows are never test rows
   std::vector<double> values;  ///< rows x parameters, raw units
   std::vector<std::uint64_t> sample_id;
   std::vector<std::int32_t> generator;  ///< bus number
@@ -37,8 +37,8 @@ class ShardStream {
   /// Reads every shard once and compares it with journal and header (read_checked). Keeps the labels, and the
   /// series if they fit. With `trust`, reads only what it keeps and checks only shapes and config. Throws
   /// InputError that names each invalid shard, and the shard and row of each value that is not finite.
-  /// `more`: a dataset with further rows for training only; it must have the same channels, samples and
-  /// parameters.
+  /// `more`: a dataset with further rows, which are never test rows; it must have the same channels, samples
+  /// and parameters.
   ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {},
               const std::optional<mpi::store::Dataset>& more = {});
 
@@ -51,7 +51,7 @@ class ShardStream {
   [[nodiscard]] const mpi::store::Dataset& dataset() const { return dataset_; }
   /// Returns whether the dataset is only in memory and has no complete records on disk.
   [[nodiscard]] bool from_memory() const { return from_memory_; }
-  /// Returns the dataset whose rows are for training only. Its row numbers follow those of the first dataset.
+  /// Returns the dataset of the further rows. Its row numbers follow those of the first dataset.
   [[nodiscard]] const std::optional<mpi::store::Dataset>& more() const { return more_; }
   [[nodiscard]] const InputSelection& selection() const { return selection_; }
   [[nodiscard]] const Labels& labels() const { return labels_; }
@@ -118,7 +118,7 @@ std::vector<std::uint64_t> epoch_order(std::span<const std::uint64_t> rows, std:
 
 struct Batch {
   std::span<const std::uint64_t> rows;
-  std::vector<float> series;  ///< rows x channels x samples
+  std::vector<float> series;  ///< rows x values of the selection
 };
 
 /// Reader of an epoch's batches; it reads one chunk ahead if the series are not in memory.

@@ -1,7 +1,9 @@
 #pragma once
-// Split of the rows into training, validation and test. Rows that share a databank sample (the same parameter
-// values) or an event are in the same part. Thus training contains neither a test sample with another fault
-// nor a test event at another machine. Rows whose number is at least Labels::judged are for training only.
+// Split of the rows into training, validation and test. Groups of rows that share a databank sample (the same
+// parameter values) or an event are not divided between training and validation. split_by_point does not
+// divide them between training and test either: training then contains neither a test sample with another
+// fault nor a test event at another machine. The other splits choose the test rows by generator or dataset.
+// Rows whose number is at least Labels::judged are never test rows.
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -17,8 +19,8 @@ struct RowSplit {
   std::vector<std::uint64_t> calibration = {};  ///< rows of these generators
 };
 
-/// Splits the groups of rows: 60 % training, 20 % validation, 20 % test. Throws InputError if a part is
-/// empty.
+/// Splits the groups of the dataset's rows: 60 % training, 20 % validation, 20 % test. Rows from
+/// Labels::judged are training rows. Throws InputError if a part is empty.
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
 /// Plan of a leave-one-out split.
 struct LeaveOneOut {
@@ -32,11 +34,13 @@ struct LeaveOneOut {
 };
 /// Returns the split whose test rows are all rows of one generator. The rows of the generators set aside are
 /// for recalibration. Of the remaining generators' databank samples, `validation_share` is for validation and
-/// the rest for training. Throws InputError if the generator has no rows or is the only one.
+/// the rest for training. Rows from Labels::judged are training or recalibration rows, except those of the
+/// generators left out. Throws InputError if the generator has no rows, or if training or validation is
+/// empty.
 RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan);
-/// Returns the split whose test rows are the whole dataset. Of the databank samples of the training-only
-/// rows, `validation_share` is for validation and the rest for training. Throws InputError if one of the
-/// three parts is empty.
+/// Returns the split whose test rows are the whole dataset. Of the databank samples of the rows from
+/// Labels::judged, `validation_share` is for validation and the rest for training. Throws InputError if one
+/// of the three parts is empty.
 RowSplit split_across(const Labels& labels, double validation_share, std::uint64_t seed);
 /// Keeps a fraction of the training rows: the first rows of the dataset and of the training dataset, as if
 /// both datasets were smaller. Throws InputError if no row remains.

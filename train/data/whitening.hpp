@@ -64,7 +64,7 @@ class Whitening {
   std::vector<Eigen::RowVectorXf> mean_;  ///< per channel
   std::vector<Eigen::MatrixXf> basis_;    ///< per channel: samples x components
   Eigen::RowVectorXf centre_, unit_;      ///< mean and standard deviation of the components
-  Eigen::MatrixXf whole_;                 ///< components of all channels and levels x kept
+  Eigen::MatrixXf whole_;                 ///< (components of all channels, levels, size) x kept
   Eigen::RowVectorXf noise_;              ///< standard deviation of the numbers' noise if level / size = 1
   std::vector<float> weights_, median_, width_;  ///< weights of samples; scale of coefficients
 };

@@ -56,8 +56,9 @@ struct LoopSettings {
 struct LoopReport {
   bool finished = false;  ///< false: stopped on request, after a checkpoint
   std::size_t epochs = 0, best_epoch = 0;
-  double seconds = 0.0;     ///< wall clock, including time before a resume [s]
-  double validation = 0.0;  ///< validation loss of the best epoch: weighted squared error, scaled units
+  double seconds = 0.0;  ///< wall clock, including time before a resume [s]
+  /// Validation loss of the best epoch: weighted squared error in scaled units, or LoopData::loss if given.
+  double validation = 0.0;
   double processor_seconds = 0.0;  ///< of all threads and ranks, including before a resume [core-s]
   LearningCurve curve;             ///< all epochs, including before a resume
 };

@@ -20,7 +20,7 @@ namespace swingbank::train::run {
 struct RunRequest {
   loop::Experiment experiment;
   std::string preset, network;
-  std::optional<std::int32_t> generator;  ///< left-out generator; none: split 60/20/20
+  std::optional<std::int32_t> generator;  ///< left-out generator; none: another split
   std::optional<std::int32_t> judged;     ///< generator tested instead of `generator`; also left out
   std::uint64_t seed = 1;
   std::optional<std::size_t> epochs;     ///< overrides the preset's value

@@ -20,7 +20,7 @@ int default_threads();
 /// fifth. Throws InputError for a negative number.
 Runtime set_up_runtime(int threads);
 
-/// Rank of this process among the processes of its launcher (OpenMPI, PMIx or Slurm); 0 of 1 without a
+/// Rank of this process among the processes of its launcher (OpenMPI or Slurm); 0 of 1 without such a
 /// launcher. It is read from the environment, so that training does not need MPI.
 struct Place {
   int rank = 0, size = 1;

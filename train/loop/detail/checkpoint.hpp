@@ -7,8 +7,8 @@
 
 namespace swingbank::train::loop {
 
-/// Writes a checkpoint. header: position and identity of the run; arrays: weights, moments and best weights,
-/// in a fixed order.
+/// Writes a checkpoint. header: position and identity of the run; arrays: weights, moments, best weights and
+/// averaged weights (if used), in a fixed order.
 void write_checkpoint(const std::filesystem::path& file, const nlohmann::json& header,
                       const std::vector<std::span<const float>>& arrays);
 /// Reads a checkpoint into `arrays` of matching lengths. Returns false if there is no such file. Throws
