@@ -85,7 +85,7 @@ struct Reading {
         .shows_default()
         .one_of({"plant", "exciter", "governor", "machine"});
   }
-  /// Returns these options as arguments for another command.
+  /// Returns the columns, the time range and the measuring point as arguments for another command.
   [[nodiscard]] std::vector<std::string> words() const {
     std::vector<std::string> all;
     for (const auto& column : columns) all.insert(all.end(), {"--columns", column});

@@ -42,8 +42,8 @@ std::string random_word() {
   return word;
 }
 
-/// Thread on which all comparisons run, one after another. With several threads, each would have its own
-/// OpenMP thread pool.
+/// Thread on which the comparisons of changed and fitted models run, one after another. With several threads,
+/// each would have its own OpenMP thread pool.
 class Worker {
  public:
   /// Runs `work` on the thread and returns its result.

@@ -1,6 +1,6 @@
 #pragma once
 // Progress text of long commands: phase, share done and time left. The share of each phase in the total time
-// was measured on the example. Other plants differ; the text therefore says "about 20 s left".
+// was measured on examples. Other plants differ; the text therefore says "about 20 s left".
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #pragma once
 // Programs that `swingbank add --retrain` starts: generation, training and evaluation of its two networks.
-// Each program resumes an interrupted run.
+// Generation and training resume an interrupted run.
 #include <fmt/format.h>
 
 #include <array>

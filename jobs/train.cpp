@@ -1,5 +1,6 @@
-// swingbank train: trains one network on a dataset split 60/20/20 by databank sample (the thesis's Table IV).
-// Under mpirun or srun, the program with MPI replaces this process, and the ranks train the network together.
+// swingbank train: trains one network on a dataset split 60/20/20 by databank sample (the thesis's Table IV),
+// or with a split across datasets. Under mpirun or srun, the program with MPI replaces this process, and the
+// ranks train the network together.
 #include "base/own_command.hpp"
 #include "jobs/train_on.hpp"
 #include "mpi/items/one_process.hpp"

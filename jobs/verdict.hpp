@@ -70,7 +70,8 @@ inline std::vector<std::filesystem::path> files_of(const std::string& word) {
   return files;
 }
 
-/// Adds signer, date, commit, limits and the SHA-256 hashes of all inputs to the provenance of a page.
+/// Adds signer, date, commit, limits and the SHA-256 hashes of model, records and limits file to the
+/// provenance of a page.
 inline void sign(validate::report::Provenance& rows, const Judging& judging, const std::string& model,
                  const std::vector<std::string>& records) {
   if (!judging.signed_by.empty()) rows.insert(rows.begin(), {"signed by", judging.signed_by});

@@ -268,7 +268,7 @@ async function fly() {
     fly();
   }
 }
-/** Shows the effect of ± 10 % of a parameter while the pointer or the keyboard focus is at it. */
+/** Shows the effect of ± 10 % of a parameter while the pointer is at it. */
 let pointed = "";
 const point = guard(async (name) => {
   pointed = name;
