@@ -119,7 +119,7 @@ tests_took() {
 keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
 
 # Determines the sizes of the nightly run once. A restart uses them again; of the options of a restart, only --tests,
-# --blind and --fuzz have an effect.
+# --blind, --fuzz and --keep-data have an effect.
 settle() {
   if [[ -s $night/sizes.conf ]]; then
     local asked_tests=$tests asked_blind=$blind asked_fuzz=$fuzz

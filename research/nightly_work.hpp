@@ -41,7 +41,7 @@ train::loop::Preset scaled(const train::loop::Preset& preset, const Scale& to);
 /// Part of a plan: one line of its table.
 struct Part {
   std::string what;      ///< "events", or a network
-  std::size_t runs = 0;  ///< noise levels times folds
+  std::size_t runs = 0;  ///< noise levels times folds, plus one for each share
   double rows = 0;       ///< rows per run (trained on or evaluated), or generated rows
   std::size_t epochs = 0;
   double core_seconds = 0;  ///< core time of all runs [s]

@@ -38,7 +38,7 @@ struct BlindTruth {
   double scale = 0;   ///< position on the path; 0: null value, 1: full value
   double wanted = 0;  ///< requested size [noise]
   double left = 0;    ///< actual size: norm of the residual of P and Q in all events, after a linear refit of
-                      ///< the machine's parameters, the switching times and the initial states [noise]
+                      ///< the model's parameters, the switching times and the initial states [noise]
   double visible = 0;  ///< size before that refit [noise]
 };
 

@@ -12,7 +12,8 @@
 namespace swingbank::research::blind::cases {
 namespace {
 
-/// Largest look-ahead of the filters [s]: two cycles for class P; half the window at 30/s for class M.
+/// Time simulated beyond the record [s], at least the look-ahead of the filters: one cycle for class P; half
+/// the window at 30/s for class M.
 constexpr double kAhead = 0.05, kAheadM = 0.2;
 
 enum FineChannel { kFineV, kFineTheta, kFineP, kFineQ, kFineSpeed, kFineIfd };
