@@ -51,7 +51,7 @@ class Dataset:
     """A dataset folder. `dataset["P"]` is a channel, rows x samples; `dataset.parameters["H"]` a parameter, rows.
 
     Attributes: `channels` and `parameter_units` map names to units; `t` [s], shape (samples,); `rate` [1/s];
-    `machine_model`; `header`, the content of dataset.json. Values of channels are per unit on each machine's base.
+    `machine_model`; `header`, the content of dataset.json. Channel values in pu are on each machine's base.
     Raises InputError if the folder holds no complete dataset.
     """
 

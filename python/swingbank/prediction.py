@@ -18,7 +18,7 @@ from .errors import InputError
 
 
 class Estimate(NamedTuple):
-    """Estimate of one parameter, mean over the records. `rmse`: error on generators outside the training data;
+    """Estimate of one parameter, mean over the records. `rmse`: root mean square error on the network's test rows;
     `scatter`: standard deviation between the records; all in `unit`."""
 
     name: str
