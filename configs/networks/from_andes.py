@@ -12,7 +12,7 @@ from pathlib import Path
 
 getcontext().prec = 40
 PI = Decimal("3.141592653589793238462643383279502884197")
-# Machine bases of the thesis' datasets [MVA]; see README.md.
+# Machine bases of the dataset files [MVA]; see README.md.
 DATASET_MVA = {
     "ieee39": {30: 1000, 31: 700, 32: 800, 33: 800, 34: 600, 35: 800, 36: 700, 37: 700, 38: 1000, 39: 10000},
     "ieee14": {1: 615, 2: 60, 3: 60, 6: 25, 8: 25},
