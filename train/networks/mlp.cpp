@@ -7,7 +7,6 @@
 #include <array>
 
 #include "train/networks/detail/layers.hpp"
-#include "train/networks/detail/norm.hpp"
 #include "train/networks/network.hpp"
 
 namespace swingbank::train::networks {
@@ -16,6 +15,12 @@ using at::Tensor;
 constexpr std::int64_t kTrunk = 768;
 constexpr std::size_t kTrunkBlocks = 3;
 
+struct Norm {
+  Tensor weight = at::ones({kTrunk}, at::kFloat).requires_grad_(true),
+         bias = at::zeros({kTrunk}, at::kFloat).requires_grad_(true);
+  [[nodiscard]] Tensor operator()(const Tensor& x) const { return at::layer_norm(x, {kTrunk}, weight, bias); }
+};
+
 void start_as_zero(const Dense& layer) {
   at::NoGradGuard no_gradients;
   layer.weight.zero_();
@@ -23,7 +28,7 @@ void start_as_zero(const Dense& layer) {
 
 /// One residual block of the trunk.
 struct Block {
-  Norm norm{kTrunk};
+  Norm norm;
   Dense first{kTrunk, kTrunk}, second{kTrunk, kTrunk};
 };
 
@@ -60,7 +65,7 @@ class Mlp final : public Network {
 
   Dense input_;
   std::array<Block, kTrunkBlocks> blocks_;
-  Norm norm_{kTrunk};
+  Norm norm_;
   Dense output_;
 };
 }  // namespace
