@@ -30,11 +30,6 @@ struct Filtered {
 Filtered filter(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
                 const std::array<double, kSteady>& steady);
 
-/// Whitened differences between the means before the event and the operating point: P, Q, V, theta and, if
-/// recorded, Ifd.
-std::vector<double> steady_residuals(const Effect& machine, const NoisyRecord& record,
-                                     const std::vector<double>& p, const std::array<double, kSteady>& steady);
-
 /// Largest number of unknowns of linearise().
 constexpr Eigen::Index kMostUnknowns = 24;
 

@@ -88,9 +88,9 @@ TEST(Experiment, CorrectingNetworksTrainAtTheirTestLevel) {
 }
 
 TEST(Experiment, PresetsCopyACompletePreset) {
-  const std::string night =
+  const std::string copy =
       "[preset.night]\nlike = \"quick\"\ndraws = 99\nepochs = 70\n[preset.night.mlp]\nbatch = 9\n";
-  const Experiment e = experiment("", "", kPhysicsAtManyLevels + night);
+  const Experiment e = experiment("", "", kPhysicsAtManyLevels + copy);
   EXPECT_EQ(e.preset("night").draws, 99u);
   EXPECT_EQ(e.preset("night").networks, e.preset("quick").networks);
   EXPECT_EQ(e.training("night", "gru").epochs, 70u);
@@ -98,7 +98,7 @@ TEST(Experiment, PresetsCopyACompletePreset) {
   EXPECT_EQ(e.training("night", "mlp").batch, 9u);
   EXPECT_TRUE(e.training("night", "mlp").noise_levels);
   EXPECT_THROW(experiment("", "", "[preset.night]\nlike = \"slow\"\n"), InputError);
-  EXPECT_THROW(experiment("", "", night + "[preset.week]\nlike = \"night\"\n"), InputError);
+  EXPECT_THROW(experiment("", "", copy + "[preset.week]\nlike = \"night\"\n"), InputError);
 }
 
 TEST(Experiment, StepsStartFromAnEarlierNetworkOfNoisyRecords) {
