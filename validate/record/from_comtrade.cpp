@@ -28,27 +28,19 @@ struct Sequence {
   std::vector<Complex> x;
 };
 
-/// Returns a channel's values in kV or kA; for an absent channel, the negative sum of the other two.
-std::vector<double> samples_of(const WaveSet& set, std::size_t phase, SampleFaults& faults) {
-  if (const Wave* w = set.waves[phase]) {
-    std::vector<double> samples = w->channel->values;
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-      if (!std::isfinite(samples[k]))
-        faults.add(w->channel->id, w->channel->id, k, "the value is marked missing",
-                   "end the record before it, or export it again");
-      samples[k] *= w->scale * (w->phase.reversed ? -1 : 1);
-    }
-    return samples;
+/// Returns a channel's values in kV or kA.
+std::vector<double> samples_of(const Wave& wave, SampleFaults& faults) {
+  std::vector<double> samples = wave.channel->values;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!std::isfinite(samples[k]))
+      faults.add(wave.channel->id, wave.channel->id, k, "the value is marked missing",
+                 "end the record before it, or export it again");
+    samples[k] *= wave.scale * (wave.phase.reversed ? -1 : 1);
   }
-  std::vector<double> sum;
-  for (const std::size_t other : {(phase + 1) % 3, (phase + 2) % 3}) {
-    const std::vector<double> values = samples_of(set, other, faults);
-    sum.resize(values.size(), 0.0);
-    for (std::size_t k = 0; k < values.size(); ++k) sum[k] -= values[k];
-  }
-  return sum;
+  return samples;
 }
 
+/// The phasors of an absent phase are the negative sum of the other two.
 Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nominal, double rate,
                      SampleFaults& faults, Problems& problems) {
   Waveforms w;
@@ -58,9 +50,12 @@ Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nomina
     const Wave* wave = set.waves[p];
     w.skew[p] = wave ? wave->channel->skew : 0;
     names[p] = wave ? wave->channel->id : std::string("the computed phase");
-    w.samples[p] = samples_of(set, p, faults);
+    w.samples[p] = wave ? samples_of(*wave, faults) : std::vector<double>(comtrade.t.size(), 0.0);
   }
   PhasorTrack track = phase_phasors(w, nominal, rate);
+  for (std::size_t p = 0; p < 3; ++p)
+    for (std::size_t k = 0; k < track.t.size() && !set.waves[p]; ++k)
+      track.x[p][k] = -(track.x[(p + 1) % 3][k] + track.x[(p + 2) % 3][k]);
   if (const auto fault = sequence_fault(track.x, names))
     problems.add(fault->what, comtrade.file, fault->why,
                  fault->remedy + " (the .cfg defines the channels' names and phases)");
@@ -110,6 +105,22 @@ void check_terminal(const std::vector<Wave>& waves, const ReadOptions& options, 
                                 : "choose one of them");
 }
 
+/// Keeps the samples of the requested time range, and one cycle on both sides for its first and last phasors.
+/// Faults outside it are thus ignored.
+void keep_range(Comtrade& c, const ReadOptions& options, double cycle) {
+  std::size_t first = 0, last = c.t.size();
+  while (first < last && c.t[first] < options.from - cycle) ++first;
+  while (last > first && c.t[last - 1] > options.until + cycle) --last;
+  const auto keep = [&](auto& values) {
+    values.resize(last);
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(first));
+  };
+  if (last - first < 2) return;  // reported as a range without samples
+  keep(c.t);
+  keep(c.places);
+  for (ComtradeChannel& channel : c.channels) keep(channel.values);
+}
+
 Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, Record about,
                       const RecordBase& base, const ReadOptions& options) {
   Problems problems;
@@ -154,6 +165,8 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
   note_set(*i, false, about);
   const Sequence voltage = sequence_of(*v, comtrade, base.frequency, rate, faults, problems);
   const Sequence current = sequence_of(*i, comtrade, base.frequency, rate, faults, problems);
+  faults.report(problems, comtrade.file);
+  problems.raise();
   RawRecord raw;
   std::vector<double> size, angle, p, q;
   for (std::size_t k = 0; k < voltage.t.size(); ++k) {
@@ -174,7 +187,14 @@ Record from_waveforms(const Comtrade& comtrade, const std::vector<Wave>& waves, 
                   "{:g} Hz, stamped in its middle.",
                   sampled, rate, base.frequency));
   raw.about = std::move(about);
-  return build_record(std::move(raw), base, options, std::move(faults), std::move(problems), comtrade.file);
+  // Faults of a phasor are located at the middle of its window.
+  const auto middle = [&](std::size_t row) {
+    return static_cast<std::size_t>(std::lround((voltage.t[row] - comtrade.t.front()) * sampled));
+  };
+  SampleFaults of_phasors(
+      [&](std::size_t first, std::size_t last) { return comtrade.where(middle(first), middle(last)); });
+  return build_record(std::move(raw), base, options, std::move(of_phasors), std::move(problems),
+                      comtrade.file);
 }
 
 Record from_phasors(const Comtrade& comtrade, Record about, const RecordBase& base,
@@ -232,6 +252,7 @@ Record record_of_comtrade(const Comtrade& given, const std::string& name, const 
   problems.raise();
   about.notes = comtrade.notes;
   if (!waveforms) return from_phasors(comtrade, std::move(about), base, options);
+  keep_range(comtrade, options, 1 / base.frequency);
   std::vector<Wave> waves;
   for (const auto& c : comtrade.channels)
     if (const auto w = wave_of(c)) waves.push_back(*w);

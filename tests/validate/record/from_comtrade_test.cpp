@@ -215,6 +215,33 @@ TEST(RecordComtradeTest, MarkedSamplesAreMissing) {
   EXPECT_THAT(w.faults(),
               Contains(AllOf(HasSubstr("VA"), HasSubstr("marked missing"), HasSubstr("bytes 1600-"))));
 }
+TEST(RecordComtradeTest, MarkedSamplesOfWaveformsCountInsideTheTimeRangeOnly) {
+  Writer w = waveforms({});
+  const auto faults = [&](double from, double until) -> std::string {
+    try {
+      (void)w.read(kTestBase, {.from = from, .until = until});
+      return "";
+    } catch (const InputError& e) {
+      return e.what();
+    }
+  };
+  w.missing = 960;  // 0.2 s
+  EXPECT_THAT(faults(0.1, 0.9), HasSubstr("marked missing"));
+  EXPECT_EQ(faults(0.3, 1.0), "");
+  w.missing = 3840;  // 0.8 s
+  EXPECT_THAT(faults(0.1, 0.9), HasSubstr("marked missing"));
+  EXPECT_EQ(faults(0.0, 0.7), "");
+}
+TEST(RecordComtradeTest, ComputedPhaseHasTheSkewOfTheOthers) {
+  Writer w = waveforms({});
+  for (auto& c : w.channels) c.skew_us = c.unit == "kV" ? 0 : 100;
+  std::erase_if(w.channels, [](const auto& c) { return c.id == "IC"; });
+  EXPECT_LT(largest_error(w.read(), {}), 1e-4);  // uncorrected: 2.2 degrees of one phase, 0.005 pu of Q
+  w = waveforms({});
+  std::erase_if(w.channels, [](const auto& c) { return c.id == "VC"; });
+  w.missing = 50;  // in VA, of which VC is computed
+  EXPECT_EQ(w.faults().size(), 1u);
+}
 TEST(RecordComtradeTest, RefusesUnusableWaveforms) {
   Writer w = waveforms({});
   EXPECT_THAT(w.faults({200, 60, 0}), ElementsAre(HasSubstr("base_kv")));
