@@ -194,10 +194,11 @@ void RawReader::generator(const Record& record) {
                     place + ": GTAP = " + shortest(tap));
   g.share = static_cast<double>(f.number(columns_.gen_status + 1, "RMPCT", 100.0L));
   if (g.bus < 0) return;
-  if (g.in_service && !units_only_ && !(g.vset > 0))
+  const bool own_bus = g.in_service && !units_only_ && !(g.vset > 0);
+  if (own_bus)
     regulate_own_bus(g, "generators with a set-point of 0 pu or below regulate to the file's voltage",
                      f.where());
-  regulated_.push_back(regulated == number ? 0 : regulated);
+  regulated_.push_back(own_bus || regulated == number ? 0 : regulated);
   if (!record.place.empty()) places_.push_back(record.place);
   network_.generators.push_back(std::move(g));
 }

@@ -205,11 +205,12 @@ TEST(FoundFiles, ReplacesImpossibleValuesWithARemark) {
   c.buses.replace(c.buses.find("0.99,-8.7"), 4, "0.00");
   c.generators =
       "101,'1',153.0,73.0,100,-100,1.05,0,0,0,0.3,0,0,1,1,100\n"
-      "102,'1',100.0,-3.0,300,-300,0.0,0,100,0,0.25,0,0.1,1.05,1,60\n";
+      "102,'1',100.0,-3.0,300,-300,0.0,103,100,0,0.25,0,0.1,1.05,1,60\n";
   const network::Network n = c.read();
   EXPECT_EQ(n.buses[2].vm, 1.0);
   EXPECT_EQ(n.generators[0].mva, 100.0);
   EXPECT_EQ(n.generators[1].vset, 1.02);
+  EXPECT_EQ(n.generators[1].regulated, -1);  // its own bus, not 103
   for (const char* what :
        {"replaced by 1 pu", "replaced by SBASE", "regulate to the file's voltage", "nominal ratio"})
     EXPECT_THAT(places(n, what), ::testing::SizeIs(1)) << what;
