@@ -28,20 +28,6 @@ struct Case {
   Recording clean, noisy;
 };
 
-Recording with_noise(Recording r, std::uint64_t seed) {
-  const auto add = [&](std::vector<double>& x, std::uint32_t key, double deviation, bool of_value) {
-    for (std::size_t k = 0; k < x.size(); ++k)
-      x[k] += deviation * (of_value ? x[k] : 1.0) * normal_pair(seed, key, k)[0];
-  };
-  add(r.V, 0, r.noise.phasor(), false);
-  add(r.theta, 1, r.noise.phasor(), false);
-  add(r.P, 2, r.noise.phasor(), false);
-  add(r.Q, 3, r.noise.phasor(), false);
-  add(r.speed, 4, r.noise.speed(), false);
-  add(r.Ifd, 5, r.noise.level, true);
-  return r;
-}
-
 struct Measured {
   std::vector<double> ms, excess;  ///< processor time; cost above the optimum of a search from the truth
   int iterations = 0;
@@ -72,7 +58,7 @@ void bench(const std::string& system, const Free& free, double level, int events
       r.event = 2.0;
       r.noise = {level};
       const auto& machine = grid.plants[k].machine;
-      cases.push_back({machine.effect, machine.p, r, with_noise(r, seed++)});
+      cases.push_back({machine.effect, machine.p, r, with_noise(r, level, seed++)});
     }
   }
   fmt::print("{}: {} records, noise {} %\n{:34} {:>8} {:>8} {:>8}   same optimum   largest excess\n", system,

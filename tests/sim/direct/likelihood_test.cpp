@@ -5,28 +5,12 @@
 
 #include <cmath>
 
-#include "sim/core/noise.hpp"
 #include "sim/direct/detail/innovations.hpp"
 #include "sim/library/library.hpp"
 #include "tests/sim/direct/recorded.hpp"
 
 namespace swingbank::sim::direct {
 namespace {
-
-Recording with_noise(Recording r, double level, std::uint64_t seed) {
-  r.noise = {level};
-  const auto add = [&](std::vector<double>& x, std::uint32_t key, double deviation, bool of_value) {
-    for (std::size_t k = 0; k < x.size(); ++k)
-      x[k] += deviation * (of_value ? x[k] : 1.0) * normal_pair(seed, key, k)[0];
-  };
-  add(r.V, 0, r.noise.phasor(), false);
-  add(r.theta, 1, r.noise.phasor(), false);
-  add(r.P, 2, r.noise.phasor(), false);
-  add(r.Q, 3, r.noise.phasor(), false);
-  add(r.speed, 4, r.noise.speed(), false);
-  add(r.Ifd, 5, level, true);
-  return r;
-}
 
 /// Means over machines, events and noise realisations: squared error divided by its bound, and chi-square.
 struct Judged {

@@ -2,6 +2,7 @@
 // Records of all machines of a grid in one fault, at the datasets' rate and precision.
 #include <vector>
 
+#include "sim/core/noise.hpp"
 #include "sim/core/recording.hpp"
 #include "tests/sim/reference/reference_support.hpp"
 
@@ -27,6 +28,22 @@ inline std::vector<Recording> recorded(const grid::Grid& grid, int bus, double c
     all.push_back(std::move(r));
   }
   return all;
+}
+
+/// Adds noise of a level to all channels.
+inline Recording with_noise(Recording r, double level, std::uint64_t seed) {
+  r.noise = {level};
+  const auto add = [&](std::vector<double>& x, std::uint32_t key, double deviation, bool of_value) {
+    for (std::size_t k = 0; k < x.size(); ++k)
+      x[k] += deviation * (of_value ? x[k] : 1.0) * normal_pair(seed, key, k)[0];
+  };
+  add(r.V, 0, r.noise.phasor(), false);
+  add(r.theta, 1, r.noise.phasor(), false);
+  add(r.P, 2, r.noise.phasor(), false);
+  add(r.Q, 3, r.noise.phasor(), false);
+  add(r.speed, 4, r.noise.speed(), false);
+  add(r.Ifd, 5, level, true);
+  return r;
 }
 
 }  // namespace swingbank::sim::direct
