@@ -1,6 +1,6 @@
 // swingbank calibrate: fits the parameters of a plant model to records of several events, by a multistart fit
-// with priors, by plain curve fitting, or by both side by side. It also selects the fewest parameters that
-// must change.
+// with priors, by plain curve fitting, or by both side by side. It also selects the smallest set of
+// parameters that must change.
 #include <fmt/format.h>
 
 #include <optional>
