@@ -61,6 +61,7 @@ struct Model : shared::BehindImpedance<Model> {
     admittance,  ///< 1/|Z|^2
     iTfreq,
     per_angle,
+    start,  ///< power at the operating point
     coefficients
   };
   enum X { Ip, Iq, Vf, Ed, Eq, Vrlag, Vilag };
@@ -98,9 +99,7 @@ struct Model : shared::BehindImpedance<Model> {
     m[voltage] = magnitude(s.Vr, s.Vi);
     inner_voltage(c, x, m[voltage], m[target_d], m[target_q]);
     terminal(c, x, squared_magnitude(s.Vr, s.Vi), s);
-    s.Pext = s.dPref;
-    s.Qext = s.dVref;
-    s.Paero = s.Te;
+    pass_references(c, s);
   }
   template <class T>
   static void derivative(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) {

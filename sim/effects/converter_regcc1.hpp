@@ -121,6 +121,7 @@ struct Model : shared::BehindImpedance<Model> {
     frozen,
     iTfreq,
     per_angle,
+    start,  ///< power at the operating point
     coefficients
   };
   // Named phi because the reference integrator treats a state named delta as a rotor angle.
@@ -178,9 +179,7 @@ struct Model : shared::BehindImpedance<Model> {
   static void electrical(const T* c, const T* x, T* m, Signals<T>& s) {
     m[voltage] = magnitude(s.Vr, s.Vi);
     terminal(c, x, squared_magnitude(s.Vr, s.Vi), s);
-    s.Pext = s.dPref;
-    s.Qext = s.dVref;
-    s.Paero = s.Te;
+    pass_references(c, s);
   }
   template <class T>
   static void derivative(const T* c, const T* x, const T* m, const Signals<T>& s, T* dx) {

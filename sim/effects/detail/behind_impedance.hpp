@@ -101,6 +101,14 @@ struct BehindImpedance : ControlledCurrent<Model> {
     active = (c[Model::r] * d + c[Model::x_e] * q) * c[Model::admittance];
     reactive = (c[Model::x_e] * d - c[Model::r] * q) * c[Model::admittance];
   }
+  /// Passes the steps of the references to the controls, and the power at the operating point to a drive
+  /// train without aerodynamics.
+  template <class T>
+  static void pass_references(const T* c, Signals<T>& s) {
+    s.Pext = s.dPref;
+    s.Qext = s.dVref;
+    s.Paero = c[Model::start];
+  }
   template <class T>
   static void follow_commands(const T* c, const T* x, const T& magnitude, const Signals<T>& s, T* dx) {
     const T V = lag(c[Model::iTfltr], x[Model::Vf], magnitude, dx[Model::Vf]);
@@ -129,6 +137,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
     if (!(value_of(Q) > 0.0)) c[Model::q_rise] = T(renewable::kNoLimit);
     if (!(value_of(Q) < 0.0)) c[Model::q_fall] = T(-renewable::kNoLimit);
     ControlledCurrent<Model>::steady_voltage(s, x);
+    c[Model::start] = P;
     s.Tm = p;
     s.Efd = q;
     s.V = V;

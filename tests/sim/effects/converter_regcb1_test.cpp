@@ -37,6 +37,12 @@ TEST(ConverterRegcb1, VoltageDropDrivesCurrentThroughTheReactance) {
   expect_near(at_once.current(0.95), {0.6, 0.2}, 1e-13);
 }
 
+TEST(ConverterRegcb1, AerodynamicPowerStaysConstantInAFault) {
+  Behind b({});
+  b.derivatives(0.1);
+  EXPECT_DOUBLE_EQ(b.s.Paero, 0.6);
+}
+
 TEST(ConverterRegcb1, PriorityCurrentIsLimitedLast) {
   Behind q_leads({{"Imax", 1.0}}), p_leads({{"Imax", 1.0}, {"pqFlag", 1.0}});
   expect_near(q_leads.current(0.85), {0.6, 0.8}, 1e-13);  // 0.15/0.25 pu more: just Imax

@@ -30,6 +30,12 @@ TEST(ConverterRegcc1, StartsAtItsCommands) {
     }
 }
 
+TEST(ConverterRegcc1, AerodynamicPowerStaysConstantInAFault) {
+  Locked b({});
+  b.derivatives(0.1);
+  EXPECT_DOUBLE_EQ(b.s.Paero, 0.6);
+}
+
 TEST(ConverterRegcc1, PllFollowsAnAngleStep) {
   Locked b({{"Kppll", 8.0}, {"Kipll", 600.0}});
   const double across = std::sin(0.1);
