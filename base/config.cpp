@@ -308,7 +308,7 @@ std::string Config::choice(const std::string& key, const std::vector<std::string
                            const std::string& otherwise, const Range& about) {
   if (trace_) return trace_->word(key, words, about, &otherwise);
   std::string word = otherwise;
-  if (!take(key, word, {}) || word.empty()) return word;
+  if (!take(key, word, {}) || !is_text(key)) return word;
   if (std::find(words.begin(), words.end(), word) == words.end())
     problem(key, key + " = '" + word + "'", "this value is not allowed",
             choose_from(word, words, words, "use one of: "));

@@ -104,6 +104,20 @@ TEST(StrictConfig, UnknownTableIsNamedOnce) {
   EXPECT_THAT(s, Not(HasSubstr("other.x")));
 }
 
+TEST(StrictConfig, EmptyTextIsRefusedWhereItIsNoChoice) {
+  Config c("who = ''\nmode = ''\nright = ''\nwrong = 5\n", "c.toml");
+  c.choice("who", {"one", "all"});
+  c.choice("mode", {"one", "all"}, "one");
+  c.choice("right", {"", "all"}, "");
+  c.choice("wrong", {"one", "all"});
+  const std::string s = sentence_of(c);
+  EXPECT_THAT(s, HasSubstr("who = '' at c.toml:1:7 (this value is not allowed)"));
+  EXPECT_THAT(s, HasSubstr("mode = '' at c.toml:2:8 (this value is not allowed)"));
+  EXPECT_THAT(s, Not(HasSubstr("right")));
+  EXPECT_THAT(s, HasSubstr("wrong = 5 at c.toml:4:9 (it must be a text in quotes)"));
+  EXPECT_THAT(s, Not(HasSubstr("wrong = ''")));
+}
+
 TEST(StrictConfig, NotANumberIsRefused) {
   Config c("a = nan\nb = inf\n", "c.toml");
   c.require<double>("a");
