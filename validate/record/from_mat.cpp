@@ -268,12 +268,15 @@ class MatReader {
              "resample them to common times in MATLAB (resample, synchronize)");
     for (std::size_t k = 0; k < columns_.size(); ++k) {
       const MatColumn& c = columns_[k];
-      if (asked.empty() ? is_time(c.name)
-                        : asked == c.name || asked.starts_with(c.name + " [") ||
-                              asked.starts_with(fmt::format("#{} ", k + 1)))
+      const auto means = [&](const std::string& name) {
+        return asked == name || asked.starts_with(name + " [");
+      };
+      if (asked.empty() ? is_time(c.name) : means(c.name) || means(fmt::format("#{}", k + 1)))
         return c.values.size();
     }
-    refuse("no time vector", "none of the variables is called t, time or timestamp", kExport);
+    if (asked.empty())
+      refuse("no time vector", "no variable has a name of the time, such as t, time or timestamp", kExport);
+    refuse(fmt::format("no time vector '{}'", asked), "no variable has this name or number", kExport);
   }
   [[noreturn]] void refuse(const std::string& what, const std::string& why, const std::string& remedy) const {
     std::string all;

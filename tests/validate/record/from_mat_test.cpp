@@ -116,6 +116,10 @@ TEST_P(RecordMatTest, NamesWithoutUnitsAreMapped) {
                              {"f", "fbus [Hz]"},
                              {"P", "Pgen [MW]"},
                              {"Q", "Qgen [Mvar]"}}});
+  expect_record(
+      {.columns = {{"t", "#1"}, {"V", "#2 [kV]"}, {"f", "#3 [Hz]"}, {"P", "#4 [MW]"}, {"Q", "#5 [Mvar]"}}});
+  EXPECT_THAT(complaints({.columns = {{"t", "watch [s]"}}}),
+              ElementsAre(AllOf(HasSubstr("no time vector 'watch [s]'"), HasSubstr("clock (90x1)"))));
 }
 
 TEST_P(RecordMatTest, MatrixHasItsListOfNames) {
