@@ -318,8 +318,7 @@ std::string Model::steady(const T* p, T* c, Signals<T>& s, T* x) {
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
   const shared::ValueCheck values(name, parameters, p, where, problems);
   values.require_switches({Flag1, Flag2});
-  values.refuse(!(p[RemoteBus] >= 0.0 && p[RemoteBus] <= parameters[RemoteBus].high), RemoteBus,
-                "there is no such bus number", "give 0 to 999997");
+  values.require_numbers({RemoteBus});
   for (int i = 0; i < parameter_count; ++i)
     values.refuse(parameters[i].unit == "s" && !(p[i] >= 0.0), i, "a time cannot be negative",
                   "give a value >= 0");

@@ -162,6 +162,7 @@ struct Model {
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const shared::ValueCheck values(name, parameters, p, where, problems);
+    values.require_numbers({RemoteBus, FromBus, ToBus});
     values.require_switches({VCFlag, RefFlag, FrqFlag});
     values.require_times({Tfltr, Tft, Tfv, Tp, Tg});
     values.require_ranges({{emax, emin}, {Qmax, Qmin}, {femax, femin}, {Pmax, Pmin}});

@@ -41,6 +41,9 @@ plant::FarPlace place_of(const network::Network& network, const plant::Plant& pl
   };
   if (const int bus = number_in(block, at.bus); bus != 0) {
     place.bus = network.bus_index(bus);
+    if (place.bus >= 0 &&
+        network.buses[static_cast<std::size_t>(place.bus)].type == network::BusType::isolated)
+      place.bus = -1;
     if (place.bus < 0) none(fmt::format("bus {}", bus));
     if (place.bus == plant.bus) place.bus = -1;
   }

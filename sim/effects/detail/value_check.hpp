@@ -2,6 +2,7 @@
 // Checks of the parameter values of an effect. A message names the parameter, its value and its unit.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <initializer_list>
 #include <span>
 #include <string>
@@ -77,6 +78,14 @@ class ValueCheck {
   void require_switches(std::initializer_list<int> list) const {
     for (const int i : list)
       refuse(p_[i] != 0 && p_[i] != 1, i, "only these codes are defined", "give 0 or 1");
+  }
+  /// Requires whole numbers from 0 to the upper end of the parameter's range: bus numbers, 0 for none.
+  void require_numbers(std::initializer_list<int> list) const {
+    for (const int i : list) {
+      const double high = parameters_[static_cast<std::size_t>(i)].high;
+      refuse(!(p_[i] >= 0 && p_[i] <= high && p_[i] == std::floor(p_[i])), i, "there is no such number",
+             fmt::format("give 0 to {:.0f}", high));
+    }
   }
   void require_finite(std::initializer_list<int> list) const {
     for (const int i : list) refuse(!(p_[i] - p_[i] == 0), i, "it must be finite", "give a number");

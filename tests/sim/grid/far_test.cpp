@@ -114,6 +114,18 @@ TEST(FarControl, ReportsUnknownBusesAndBranches) {
   EXPECT_FALSE(grid.plants.at(1).far.has_value());
 }
 
+TEST(FarControl, IsolatedBusIsNotMeasured) {
+  Control control;
+  control.codes = "105 0 0 '0'";
+  formats::RawCase raw = behind_a_branch();
+  raw.buses += "105,'GONE',138.0,4,1,1,1,1.0,0.0,1.1,0.9,1.1,0.9\n";
+  const Grid grid = load_from(raw, plants(control));
+  std::string said;
+  for (const network::Remark& remark : grid.network.remarks) said += remark_line(remark, 5) + "\n";
+  EXPECT_THAT(said, HasSubstr("REPCA1 of generator 104: bus 105"));
+  EXPECT_FALSE(grid.plants.at(1).far.has_value());
+}
+
 TEST(FarControl, IsRecomputedAtAnotherOperatingPoint) {
   const Grid grid = load_from(behind_a_branch(), plants({}));
   network::Network less = grid.network;
