@@ -104,16 +104,16 @@ void check_options(const Options& options, Problems& problems) {
     if (file.extension() != ".csv" && file.extension() != ".h5")
       problems.add("extension '" + file.extension().string() + "'", "--out " + file.string(),
                    "runs are written as .csv or .h5", "end the name in .csv or .h5");
-  if (options.integrator == "lanes" && !options.buses.empty())
-    problems.add("--buses with --integrator lanes", "--buses",
-                 "the lanes engine works on the network reduced to the generator buses",
+  if (options.integrator == "batch" && !options.buses.empty())
+    problems.add("--buses with --integrator batch", "--buses",
+                 "the batch engine works on the network reduced to the generator buses",
                  "use --integrator reference");
-  if (options.integrator == "lanes" && options.after_switching)
-    problems.add("--after-switching with --integrator lanes", "--after-switching",
-                 "the lanes engine records the value before a switching", "use --integrator reference");
+  if (options.integrator == "batch" && options.after_switching)
+    problems.add("--after-switching with --integrator batch", "--after-switching",
+                 "the batch engine records the value before a switching", "use --integrator reference");
 }
 
-double tolerance(const Options& o) { return o.tolerance.value_or(o.integrator == "lanes" ? 1e-6 : 1e-8); }
+double tolerance(const Options& o) { return o.tolerance.value_or(o.integrator == "batch" ? 1e-6 : 1e-8); }
 
 reference::ReferenceRun play(const Options& o, int finer, const grid::Grid& grid, const network::Event& event,
                              std::vector<int> plants, std::vector<Channel> channels, std::vector<int> buses) {
@@ -475,10 +475,10 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--changes", o.changes, "text file of all changes to the case, one line per change");
   line.group("Expert");
   line.add("--integrator", o.integrator,
-           "reference: IDA on the unreduced equations; lanes: the vectorised (SIMD) solver used by generate")
-      .one_of({"reference", "lanes"})
+           "reference: IDA on the unreduced equations; batch: the vectorised (SIMD) solver used by generate")
+      .one_of({"reference", "batch"})
       .shows_default();
-  line.add("--tolerance", o.tolerance, "relative error per step (reference 1e-8, lanes 1e-6)");
+  line.add("--tolerance", o.tolerance, "relative error per step (reference 1e-8, batch 1e-6)");
   line.example(
       "swingbank simulate --raw grid.raw --dyr grid.dyr --fault 16:1.0:1.1 --t-end 10 --out run.csv");
   if (!line.parse(argc, argv)) return line.end();

@@ -54,7 +54,7 @@ AttemptLog::AttemptLog(const fs::path& folder, const std::map<std::string, std::
 }
 
 void AttemptLog::add_property(const std::string& name, const std::string& value) {
-  append_attempt(file_, {{"run", id_}, {"event", "tells"}, {"time", utc_now()}, {name, value}});
+  append_attempt(file_, {{"run", id_}, {"event", "property"}, {"time", utc_now()}, {name, value}});
 }
 
 void AttemptLog::end(const std::string& outcome) {

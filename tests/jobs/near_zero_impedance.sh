@@ -59,7 +59,7 @@ simulate three --trip 2:5:1:1 >/dev/null 2>"$work/said" && fail "--trip 2:5:1:1 
 grep -q 'no bus 5' "$work/said" || fail "--trip 2:5:1:1: $(cat "$work/said")"
 # The winding at bus 2 connects only the unit. Each of these trips disconnects the unit, which runs on without load.
 for trip in 2:3:1:1 2:3:4:1:1 4:3:2:1:1:1.1; do
-  said=$(simulate three --trip "$trip" --integrator lanes 2>&1) || fail "--trip $trip: $said"
+  said=$(simulate three --trip "$trip" --integrator batch 2>&1) || fail "--trip $trip: $said"
 done
 simulate three --trip 2:3:1:1 --channels P >/dev/null 2>&1
 p=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "2.P_pu") column = i } NR == 63 { print $column }' "$work/three.csv")
@@ -67,10 +67,10 @@ below "${p#-}" 1e-6 || fail "the unit behind its open winding delivers $p pu"
 
 # A disconnected load is shed and reported; the rest of the grid runs on.
 case_of radial "3,4,'1',0.01,0.08" "$gsu" 0.003,0.09,100 1.0 1.0
-for integrator in reference lanes; do
+for integrator in reference batch; do
   said=$(simulate radial --trip 1:4:1:1 --trip 3:4:1:1 --integrator $integrator 2>&1) || fail "shed load: $said"
   grep -q 'bus 4 at 1 s: 150.00 MW, 40.00 Mvar' <<<"$said" || fail "shed load is not reported: $said"
   grep -q ' at 3 s' <<<"$said" || fail "shed load: $said"
   cp "$work/radial.csv" "$work/$integrator.csv"
 done
-below "$(largest reference lanes)" 1e-4 || fail "shed load: lanes differ by $(largest reference lanes)"
+below "$(largest reference batch)" 1e-4 || fail "shed load: the batch differs by $(largest reference batch)"

@@ -7,7 +7,7 @@ simulate() {
   "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --t-end 4 \
     --rate 60 --fault 5:1:1.1 --plants 2 "$@"
 }
-for integrator in reference lanes; do
+for integrator in reference batch; do
   simulate --integrator $integrator --out "$work/true_$integrator.csv" --out "$work/true_$integrator.h5" >/dev/null
   simulate --integrator $integrator --measure CTERROR:gain=0.01,phase=0.005 --measure SKEW:skew=0.05 \
     --out "$work/measured_$integrator.csv" >/dev/null
@@ -28,7 +28,7 @@ def table(name):
         rows = list(csv.reader(file))
     return {name: [float(v) for v in column] for name, column in zip(rows[0], zip(*rows[1:]))}
 
-for integrator in ("reference", "lanes"):
+for integrator in ("reference", "batch"):
     true, seen = table(f"true_{integrator}"), table(f"measured_{integrator}")
     assert "2.f_hz" in seen and "2.f_hz" not in true
     assert seen["t_s"] == true["t_s"]

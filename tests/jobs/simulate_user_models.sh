@@ -7,7 +7,7 @@ simulate() {
   "$swingbank" simulate --raw "$networks/ieee14_genrou.raw" --dyr "$networks/ieee14_genrou.dyr" --t-end 5 \
     --fault 5:1:1.1 --plants 2 --channels delta,Efd,Tm "$@"
 }
-for integrator in reference lanes; do
+for integrator in reference batch; do
   simulate --integrator $integrator --user-model "$laws/sexs.toml" --attach 2:SEXSLAW:K=50,EMAX=4 \
     --attach 2:FORCEDOSC:amplitude=0.02,frequency=0.7,start=2 --out "$work/law_$integrator.csv" >/dev/null
   simulate --integrator $integrator --attach 2:SEXS:K=50,EMAX=4 \
@@ -24,10 +24,10 @@ def rows(name):
 def worst(a, b):
     return max(abs(x - y) for one, other in zip(rows(a), rows(b)) for x, y in zip(one, other))
 
-assert worst("law_lanes", "compiled_lanes") < 1e-9  # the CSV has 12 significant digits
+assert worst("law_batch", "compiled_batch") < 1e-9  # the CSV has 12 significant digits
 assert worst("law_reference", "compiled_reference") < 1e-6  # two runs at rtol 1e-8
-assert worst("law_lanes", "law_reference") < 1e-4  # accuracy of the SIMD integrator ("lanes")
-assert worst("law_lanes", "plain") > 0.1  # exciter and disturbance act
+assert worst("law_batch", "law_reference") < 1e-4  # accuracy of the SIMD integrator ("batch")
+assert worst("law_batch", "plain") > 0.1  # exciter and disturbance act
 PYTHON
 
 refuses "no file" "cannot read the user-defined model at $work/none.toml" simulate --user-model "$work/none.toml" --out "$work/x.csv"
