@@ -15,6 +15,7 @@
 //   equations of its kind         MachineOps, ControlOps, TransformerOps or LoadOps below
 //   steady<T>()                   back-initialisation from the operating point
 //   converter                     of a source, optional: true if it is a controlled current source
+//   takes_commands                of a converter, optional: false if it has its own control
 //   at_shunt                      of a load, optional: layout of its .dyr records for switched shunts
 //   publish<T>()                  of a control, optional: writes outputs that are states, before evaluation
 //   afterwards<T>()               of a control, optional: derivatives that need the field voltage
@@ -331,6 +332,7 @@ struct Effect {
   int coefficients, scratch;              ///< numbers of coefficients c and of scratch values m
   int guards = 0;                         ///< number of functions that guard() computes
   bool converter = false;                 ///< of a source: true if it is a controlled current source
+  bool takes_commands = true;             ///< of a converter: false if it has its own control
   /// Layout of the .dyr records of a load that belong to switched shunts, else nullptr.
   const ShuntRecord* at_shunt = nullptr;
   Elsewhere elsewhere = {};  ///< parameters that select a remote measuring point
@@ -446,6 +448,7 @@ Effect make_effect() {
   if constexpr (requires { M::scratch; }) e.scratch = M::scratch;
   if constexpr (requires { M::guards; }) e.guards = M::guards;
   if constexpr (requires { M::converter; }) e.converter = M::converter;
+  if constexpr (requires { M::takes_commands; }) e.takes_commands = M::takes_commands;
   if constexpr (requires { M::at_shunt; }) e.at_shunt = &M::at_shunt;
   if constexpr (requires { M::elsewhere; }) e.elsewhere = M::elsewhere;
   e.check = +[](const void*, const double* p, const std::string& where, Problems& problems) {

@@ -26,6 +26,7 @@ struct Model : shared::ControlledCurrent<Model> {
   speed: frequency of the terminal voltage, measured with the lag Tfreq
   It takes no commands: no converter control may accompany it.
 )";
+  static constexpr bool takes_commands = false;
   enum P { K, T1, T2, T3, T4, T5, RMIN, VMAX, VMIN, CBASE, Tfreq };
   static constexpr Source defaults_from = literature::psid("CSVGN1, in its test 49");
   static constexpr Source bounds_from = shared::kNoCases;

@@ -48,6 +48,7 @@ struct Model : shared::ControlledCurrent<Model> {
   It takes no commands: no converter control may accompany it. Additions to Tm and Efd are added to the
   commands.
 )";
+  static constexpr bool takes_commands = false;
   enum P {
     pfFlag,
     freqFlag,
@@ -403,7 +404,8 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   values.refuse(!(p[Vrfrac] >= 0 && p[Vrfrac] <= 1), Vrfrac, "it is a fraction", "give 0 to 1");
   if (p[vtripFlag] == 0) return;
   for (const auto& [high, low] : {std::pair<int, int>{Vl1, Vl0}, {Vh0, Vh1}, {Vh1, Vl1}})
-    values.refuse(!(p[high] > p[low]), values.text(high, low), "units trip gradually between them",
+    values.refuse(!(p[high] > p[low]), values.text(high, low),
+                  "units trip gradually from Vl1 to Vl0 and from Vh1 to Vh0",
                   "give Vl0 < Vl1 < Vh1 < Vh0, or vtripFlag = 0");
 }
 

@@ -47,16 +47,19 @@ void check_followers(const Grid& grid, const EventPlace& place, const network::E
   for (const network::SetpointStep& step : event.setpoint_steps) {
     const auto plant = std::ranges::find(grid.plants, step.generator, &plant::Plant::generator);
     if (plant == grid.plants.end()) continue;
-    const auto lacks = [&](Slot slot) {
-      return std::ranges::none_of(plant->controls,
-                                  [&](const plant::Block& b) { return b.effect->slot == slot; });
+    const Effect* source = plant->machine.effect;
+    if (source && source->converter && !source->takes_commands) continue;
+    const auto require = [&](double size, std::string_view reference, EventPart part, Slot of_machine) {
+      const Slot slot = source && source->converter ? Slot::electrical_control : of_machine;
+      if (size == 0 ||
+          std::ranges::any_of(plant->controls, [&](const plant::Block& b) { return b.effect->slot == slot; }))
+        return;
+      problems.add(fmt::format("step of {} without effect at plant {}", reference, plant->name),
+                   place(part, ""), fmt::format("the plant has no {}", slot_name(slot)),
+                   "choose a plant with one, or add one to the .dyr");
     };
-    if (step.dVref != 0 && lacks(Slot::exciter))
-      problems.add("step of Vref without effect at plant " + plant->name, place(EventPart::vref_step, ""),
-                   "the plant has no exciter", "choose a plant with one, or add one to the .dyr");
-    if (step.dPref != 0 && lacks(Slot::governor))
-      problems.add("step of Pref without effect at plant " + plant->name, place(EventPart::pref_step, ""),
-                   "the plant has no governor", "choose a plant with one, or add one to the .dyr");
+    require(step.dVref, "Vref", EventPart::vref_step, Slot::exciter);
+    require(step.dPref, "Pref", EventPart::pref_step, Slot::governor);
   }
 }
 

@@ -51,6 +51,15 @@ refuses "an exciter of a converter" "SEXS for generator 32 .*exciter belongs to 
 refuses "a plant control of a machine" "REPCA1 for plant 30 .*plant_control belongs to a converter" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/case.dyr" --attach 30:REPCA1 --out "$work/x.csv"
 grep -v REPCA1 "$work/case.dyr" >"$work/without.dyr"
+grep -v REECB1 "$work/without.dyr" >"$work/source.dyr"
+refuses "a step of a reference that no control reads" "Vref without effect at plant 32 .*the plant has no electrical_control" \
+  "$swingbank" simulate --raw "$raw" --dyr "$work/source.dyr" --vref-step 32:1:0.02 --out "$work/x.csv"
+simulate --t-end 2 --pref-step 32:1:0.02 --out "$work/step.csv" >/dev/null || fail "a step of a converter's Pref is refused"
+awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "32.P_pu") p = i } NR == 2 { first = $p } END { exit !($p > first + 0.001) }' \
+  "$work/step.csv" || fail "P does not follow a step of Pref"
+sed "s/^32 'REGCA1'.*/32 'CSVGN1' 1 20 0 1 0.15 1 0.005 0 2 -1 100 \//" "$work/without.dyr" >"$work/own.dyr"
+refuses "a control of a converter that takes no commands" "REECB1 for generator 32 .*CSVGN1 takes no commands" \
+  "$swingbank" simulate --raw "$raw" --dyr "$work/own.dyr" --out "$work/x.csv"
 refuses "a plant control that measures nowhere" "bus 999, which REPCA1 of plant 32 measures, is not in service at --attach" \
   "$swingbank" simulate --raw "$raw" --dyr "$work/without.dyr" --attach 32:REPCA1:RemoteBus=999 --out "$work/x.csv"
 
