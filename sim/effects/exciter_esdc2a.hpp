@@ -37,7 +37,7 @@ struct Model {
   static constexpr std::span<const State> states = kStates;
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    B::check(p, where, problems);
+    B::check_with({B::TR, B::TA, B::TB}, {name, parameters, p, where, problems}, p);
   }
 
   template <class T>

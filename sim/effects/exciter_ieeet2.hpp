@@ -53,7 +53,7 @@ struct Model : shared::RotatingDc<Model> {
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const shared::ValueCheck values(name, parameters, p, where, problems);
-    RotatingDc::check_with({TR, TF2}, p, where, problems);
+    RotatingDc::check_with({TR, TF2}, values, p);
     values.require_positive({TA}, "the rate feedback needs a lagged Vr");
   }
   template <class T>

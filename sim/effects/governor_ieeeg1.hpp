@@ -106,11 +106,18 @@ struct Model {
       {"last", "pu", "flow through the last stage, x7", 1.0, -1, -1, {iT7}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    check_as(name, p, where, problems);
+    const shared::ValueCheck values(name, parameters, p, where, problems);
+    check_valve(values, p);
+    check_shares(values, p[K1] + p[K3] + p[K5] + p[K7], values.text(K1, K3, K5, K7));
   }
-  /// Checks the parameters of IEEEG1 or of a model that uses its equations; `model`: its name, `p`: values in
+  /// Checks all parameters but K1, K3, K5 and K7, for IEEEG1 or a model with its equations; `p`: values in
   /// the order of IEEEG1.
-  static void check_as(std::string_view model, const double* p, const std::string& where, Problems& problems);
+  static void check_valve(const shared::ValueCheck& values, const double* p);
+  /// Checks the sum of the stages' shares; `text`: the shares with their values.
+  static void check_shares(const shared::ValueCheck& values, double sum, const std::string& text) {
+    values.refuse(!(sum > 0), text, "these fractions of the stages add up to the turbine's power",
+                  "give fractions with a sum > 0");
+  }
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
@@ -164,17 +171,12 @@ struct Model {
   }
 };
 
-inline void Model::check_as(std::string_view model, const double* p, const std::string& where,
-                            Problems& problems) {
-  const shared::ValueCheck values(model, parameters, p, where, problems);
+inline void Model::check_valve(const shared::ValueCheck& values, const double* p) {
   values.require_divisors({T3});
   values.require_times({T1, T2, T4, T5, T6, T7});
   values.refuse(!(p[UO] > 0 && p[UC] < 0), values.text(UO, UC), "the valve must be able to open and to close",
                 "give UO > 0 and UC < 0");
   values.require_above(PMAX, PMIN, "the range of the valve must not be empty");
-  values.refuse(!(p[K1] + p[K3] + p[K5] + p[K7] > 0), values.text(K1, K3, K5, K7),
-                "these fractions of the stages add up to the turbine's power",
-                "give fractions with a sum > 0");
   for (const int i : {JBUS, M, K2, K4, K6, K8})
     values.refuse(p[i] != 0, i, "a second, low-pressure generator is not modelled",
                   "give 0 and put its share into K1, K3, K5 or K7");

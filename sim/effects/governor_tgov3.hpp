@@ -35,6 +35,10 @@ struct Model {
     for (std::size_t i = 0; i < std::size(kAs); ++i) all[i] = B::parameters[kAs[i]];
     all[K2].name = all[K2].symbol = "K2";
     all[K3].name = all[K3].symbol = "K3";
+    all[K1].meaning = "share of power before the reheater";
+    all[K2].meaning = "share of power after the reheater";
+    all[T5].meaning = "time constant of the reheater";
+    all[T6].meaning = "time constant of the crossover";
     all[T5].low = all[T6].low = 0.01;
     constexpr std::string_view names[] = {"TA", "TB", "TC"};
     for (int i = TA; i <= TC; ++i)
@@ -64,8 +68,10 @@ struct Model {
     return q;
   }
   static void check(const double* p, const std::string& where, Problems& problems) {
+    const auto q = as_ieeeg1(p);
+    B::check_valve({name, B::parameters, q.data(), where, problems}, q.data());
     const shared::ValueCheck values(name, parameters, p, where, problems);
-    B::check_as(name, as_ieeeg1(p).data(), where, problems);
+    B::check_shares(values, p[K1] + p[K2] + p[K3], values.text(K1, K2, K3));
     values.require_positive({T5, T6, PRMAX}, "TGOV3 has a reheater");
   }
 

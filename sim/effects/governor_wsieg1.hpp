@@ -120,7 +120,9 @@ struct Model {
     std::array<double, parameter_count> q;
     std::copy(p, p + parameter_count, q.begin());
     if (p[IBLOCK] >= 2 && p[B::PMAX] == 0.0) q[B::PMAX] = p[B::PMIN] + 1.0;  // set at the operating point
-    B::check_as(name, q.data(), where, problems);
+    B::check_valve({name, parameters, q.data(), where, problems}, q.data());
+    B::check_shares(values, p[B::K1] + p[B::K3] + p[B::K5] + p[B::K7],
+                    values.text(B::K1, B::K3, B::K5, B::K7));
     values.refuse(p[ERR] != 0.0 && p[ERR] != p[B::db], values.text(ERR, B::db), shared::kDeadBandStep,
                   "give err = 0 or err = db1");
     values.refuse_negative({DB2}, "a width cannot be negative");

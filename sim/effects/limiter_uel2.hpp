@@ -31,6 +31,7 @@ struct Model {
   P / Vf^K1 --> [ 1/(1 + s TUP) ] --> P' --> [ through (P0, Q0) ... (P10, Q10) ] --> Q'
   Qref = Q' Vf^K2        e = Qref - Qf            above zero below the lines
   Qquad = 0: mirrored for P' < 0; 1: first line extended to P' < 0. Beyond the last point Q' is constant.
+  Unused points are 0; after a negative power, (0, 0) is a point of the lines.
   d Vui/dt = KUI e within [VUIMIN, VUIMAX], non-windup
   Vui + KUL e -> (1 + s TU1)/(1 + s TU2) -> (1 + s TU3)/(1 + s TU4) -> [VULMIN, VULMAX] -> Vuel
   Vlimiter = Vlimiter + Vuel            (at the exciter's summing point; a time constant of 0: bypass)

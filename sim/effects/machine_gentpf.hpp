@@ -41,7 +41,8 @@ struct Model {
     return q;
   }
   static void check(const double* p, const std::string& where, Problems& problems) {
-    B::check(as_gentpj(p).data(), where, problems);
+    const auto q = as_gentpj(p);
+    B::check_with({name, B::parameters, q.data(), where, problems}, q.data());
   }
   static std::string_view unphysical(const double* p) { return B::unphysical(as_gentpj(p).data()); }
 

@@ -112,7 +112,11 @@ struct Model {
   };
   enum M { sn, cs, eq, ed, Id, Iq, kd, kq, scratch };
 
-  static void check(const double* p, const std::string& where, Problems& problems);
+  static void check(const double* p, const std::string& where, Problems& problems) {
+    check_with({name, parameters, p, where, problems}, p);
+  }
+  /// Checks the parameters of GENTPJ or GENTPF; `p`: values in the order of GENTPJ.
+  static void check_with(const shared::ValueCheck& values, const double* p);
   static std::string_view unphysical(const double* p) {
     if (!(p[Xd] > p[Xdp] && p[Xdp] > p[Xdpp] && p[Xdpp] > p[Xl])) return "Xd > X'd > X''d > Xl";
     if (!(p[Xq] >= p[Xqp] && p[Xqp] > p[Xqpp] && p[Xqpp] > p[Xl])) return "Xq >= X'q > X''q > Xl";
@@ -266,8 +270,7 @@ struct Model {
   }
 };
 
-inline void Model::check(const double* p, const std::string& where, Problems& problems) {
-  const shared::ValueCheck values(name, parameters, p, where, problems);
+inline void Model::check_with(const shared::ValueCheck& values, const double* p) {
   values.require_divisors({H, Tdop, Tdopp, Tqopp, Xd, Xdpp, Xqpp});
   values.require_difference(Xdp, Xdpp);
   values.require_difference(Xqp, Xqpp);

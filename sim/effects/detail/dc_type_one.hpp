@@ -35,7 +35,7 @@ struct DcBehindLeadLag : RotatingDc<Model> {
   enum X { Vm, leadlag, Vr, Efd, rate };
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    Dc::check_with({TR, TA, TB}, p, where, problems);
+    Dc::check_with({TR, TA, TB}, {Model::name, Model::parameters, p, where, problems}, p);
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

@@ -46,11 +46,10 @@ struct RotatingDc {
       kSE2 = {"SE2", "SE(E2)", "-", 0.5, 0.0, 2.0, 0.0, "saturation factor at E2", kMild, kSteep};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
-    check_with({Model::TR, Model::TA}, p, where, problems);
+    check_with({Model::TR, Model::TA}, {Model::name, Model::parameters, p, where, problems}, p);
   }
   /// Checks the parameters; `bypassed`: time constants that may be zero.
-  static void check_with(std::initializer_list<int> bypassed, const double* p, const std::string& where,
-                         Problems& problems);
+  static void check_with(std::initializer_list<int> bypassed, const ValueCheck& values, const double* p);
 
   template <class T>
   static void prepare(const T* p, const Conventions&, T* c) {
@@ -103,10 +102,9 @@ struct RotatingDc {
 };
 
 template <class Model>
-void RotatingDc<Model>::check_with(std::initializer_list<int> bypassed, const double* p,
-                                   const std::string& where, Problems& problems) {
+void RotatingDc<Model>::check_with(std::initializer_list<int> bypassed, const ValueCheck& values,
+                                   const double* p) {
   using M = Model;
-  const shared::ValueCheck values(M::name, M::parameters, p, where, problems);
   values.require_divisors({M::TE});
   values.require_time(M::TF, p[M::KF] != 0, "KF = 0");
   values.require_positive({M::KA}, "an exciter needs a gain");

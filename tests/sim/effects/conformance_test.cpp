@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
+#include <functional>
 #include <random>
 #include <set>
+#include <utility>
 
 #include "sim/core/effect.hpp"
 #include "sim/library/library.hpp"
@@ -110,6 +113,39 @@ TEST(Conformance, RecordsAreComplete) {
     e.check(nullptr, e.default_parameters().data(), "test", problems);
     EXPECT_TRUE(problems.empty()) << e.name << ": standard values are refused";
   }
+}
+
+/// Returns the words of a text that may be a name of an effect.
+std::set<std::string, std::less<>> words_of(const std::string& text) {
+  std::set<std::string, std::less<>> words;
+  std::string word;
+  for (const char c : text + ' ')
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) {
+      word += c;
+    } else {
+      words.insert(std::exchange(word, {}));
+    }
+  return words;
+}
+
+TEST(Conformance, ProblemsNameTheEffectAndItsParameters) {
+  for (const auto& e : library::compiled_effects())
+    for (const double sign : {-1.0, 0.0, 1.0})
+      for (std::size_t i = 0; i < e.parameters.size(); ++i) {
+        std::vector<double> p = e.default_parameters();
+        p[i] = sign * 1234.5;
+        Problems problems;
+        e.check(e.user_model.get(), p.data(), "test", problems);
+        for (const Problem& problem : problems.list()) {
+          const auto words = words_of(problem.sentence());
+          for (const auto& other : library::compiled_effects())
+            EXPECT_TRUE(&other == &e || !words.contains(other.name)) << e.name << ": " << problem.sentence();
+          const auto equals = problem.what.find(" = ");
+          if (equals == std::string::npos) continue;
+          EXPECT_GE(e.parameter_index(problem.what.substr(0, equals)), 0)
+              << e.name << ": " << problem.sentence();
+        }
+      }
 }
 
 TEST(Conformance, SteadyStateHasZeroDerivatives) {

@@ -30,6 +30,9 @@ TEST(GovernorSteamVariants, Tgov3ReheaterIsLimitedByItsPressure) {
   bench.run(6.0, 5e-3);
   EXPECT_LT(bench.state("reheat"), 0.9);
   EXPECT_FALSE(ControlBench("TGOV3", {{"PRMAX", 0.0}}).problems.empty());
+  const ControlBench powerless("TGOV3", {{"K1", 0.0}, {"K2", 0.0}, {"K3", 0.0}});
+  ASSERT_EQ(powerless.problems.list().size(), 1u);
+  EXPECT_EQ(powerless.problems.list()[0].what, "K1 = 0 pu with K2 = 0 pu, K3 = 0 pu");
 }
 
 TEST(GovernorSteamVariants, IeesgoSmallSignals) {
