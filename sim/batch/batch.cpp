@@ -70,7 +70,7 @@ void refuse_far_regulation(const grid::Grid& grid) {
       problems.add(fmt::format("{} at {} regulates bus {}", load.block.effect->name, load.name,
                                grid.network.buses[static_cast<std::size_t>(load.regulated)].number),
                    grid.network.origin, "the batch computes voltages only at machines and modelled loads",
-                   "use the reference integrator, or set its own bus as regulated bus");
+                   "use the reference integrator, or let the load regulate its own bus");
   problems.raise();
 }
 }  // namespace

@@ -15,11 +15,11 @@
 
 namespace swingbank::sim::batch {
 
-/// Options of a batch; `t_end` in seconds, `rate` in samples per second.
+/// Options of a batch.
 struct BatchOptions {
   double t_end = 15.0, rate = 120.0;  ///< end of the simulation [s]; samples per second [1/s]
-  double tolerance = 1e-6;            ///< error per step, weighted maximum norm over the states
-  std::vector<int> plants;            ///< recorded plants; empty: all
+  double tolerance = 1e-6;            ///< tolerance of the error per step, weighted maximum norm
+  std::vector<int> plants;            ///< indices of the recorded plants; empty: all
   std::vector<Channel> channels;      ///< recorded channels; empty: all of kChannels
   int lanes = 0;  ///< 1, 4 or 8 in double, 16 in float (decision 02); 0: 4 or 8, by the register size
   /// Limit of synchronism: a run ends when the angle between two rotors of one island has changed by more
@@ -30,8 +30,7 @@ struct BatchOptions {
 /// One simulation: its event and the plants' parameters. Unlisted plants have the parameters of the grid.
 struct Job {
   std::uint64_t id = 0;  ///< identifier chosen by the caller; without influence on the result
-  /// The batch's grid at another operating point (grid/operating_point.hpp); null: unchanged. The job shares
-  /// its ownership.
+  /// The batch's grid at another operating point (grid/operating_point.hpp); null: unchanged.
   std::shared_ptr<const grid::Grid> grid = {};
   network::Event event;  ///< faults, switchings and steps of the simulation
   /// Parameter values of one block: of one model component of a plant (machine, exciter, governor ...).
@@ -44,7 +43,8 @@ struct Job {
   std::vector<BlockValues> parameters = {};  ///< blocks whose values differ from the grid's
 };
 
-/// Returns the plants whose parameters a job changes, by index. `grid`: the batch's grid.
+/// Returns the plants whose parameters a job changes, with the job's parameters, by index. `grid`: the
+/// batch's grid.
 std::map<int, plant::Plant> changed_plants(const grid::Grid& grid, const Job& job);
 
 /// Integrates jobs on one grid in SIMD lanes. One Batch runs in one thread.

@@ -126,7 +126,7 @@ void BatchKernel<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
   }
 }
 
-/// Computes the Jacobian of this residual with respect to V into `a`; call after algebra_rest(). dE/dV is a
+/// Computes the Jacobian of algebra_rest()'s residual with respect to V into `a`; call after it. dE/dV is a
 /// difference quotient, whose error only slows the convergence.
 template <class T>
 void BatchKernel<T>::algebra_jacobian(const Constants& k, const T* x, T* a) {
@@ -214,12 +214,12 @@ struct LaneSearch {
   }
 };
 
-/// Runs Newton's method in the lanes of `open`, starting from the voltages in k. Returns the lanes that did
-/// not converge. Factors are reused in later searches as long as the iteration converges fast enough: a
-/// factorisation costs O(K^3), a step O(K^2). The factors of a lane depend only on its own history.
+/// Runs Newton's method in the lanes of the bit mask `open`, starting from the voltages in k. Returns the
+/// lanes that did not converge. Factors are reused in later searches as long as the iteration converges fast
+/// enough: a factorisation costs O(K^3), a step O(K^2). The factors of a lane depend only on its own history.
 template <class T>
 unsigned BatchKernel<T>::search_voltages(Constants& k, const T* x, unsigned open) {
-  constexpr int limit = 40, patience = 8;
+  constexpr int limit = 40, patience = 8;  // largest number of steps; steps before the factors are renewed
   constexpr double longest = 0.3;  // largest step [pu]; a constant-power load may cause too large first steps
   constexpr unsigned all = (1U << kLanes) - 1U;
   const std::size_t count = nonlinear_.size();

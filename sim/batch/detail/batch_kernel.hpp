@@ -34,7 +34,7 @@ class BatchKernel {
  private:
   using Traits = LaneTraits<T>;
   using Real = typename Traits::Real;
-  /// Whether increments are added to the states with compensated summation, as in single precision.
+  /// True in single precision: increments are added to the states with compensated summation.
   static constexpr bool kCarries = std::is_same_v<Real, float>;
   /// Factor of dp54::kink in the error estimate. 0.03 would bound the error of a kink by the tolerance; this
   /// value bounds it by ten times the tolerance.
@@ -54,8 +54,8 @@ class BatchKernel {
   /// reaches or leaves its limits. At a limit, successive stages have bitwise equal Vs.
   struct Watch {
     int first, count;           ///< first state of the exciter, number of its states
-    T start{}, last{};          ///< Vs at the start of the step and at the last stage
-    T rested{}, rested_next{};  ///< 1 if the last stage left Vs unchanged; for the previous and this step
+    T start{}, last{};          ///< Vs at the start of the step and at the latest stage
+    T rested{}, rested_next{};  ///< 1 if the latest stage left Vs unchanged: previous step, this step
     T same{};                   ///< number of stages with Vs unchanged from the previous stage
   };
 
@@ -84,11 +84,11 @@ class BatchKernel {
   struct Constants {
     std::vector<T> c, g, b, efd, tm, dvref, dpref, on;  ///< on: 1, or 0 if the plant is tripped
     std::vector<T> far_g, far_b;                        ///< rows of remote measurements, see InternalMatrix
-    std::vector<T> vr, vi;   ///< voltages at nonlinear sources: start of the next search [pu]
+    std::vector<T> vr, vi;   ///< voltages at nonlinear sources: start of Newton's method [pu]
     T last_moment;           ///< upper bound of the time passed to effects [s]
     std::vector<T> factors;  ///< factors of the Newton matrix; each lane renews its own
     unsigned factored = 0;   ///< lanes with valid factors
-    unsigned fallen = 0;     ///< lanes whose search restarted from zero voltage in this step
+    unsigned fallen = 0;     ///< lanes in which Newton's method restarted from zero voltage in this step
   };
 
   // one evaluation (equations.hpp)
@@ -179,8 +179,8 @@ class BatchKernel {
   std::optional<SwitchedNetwork> switched_;             ///< used if shares_
   std::optional<InternalMatrix> own_matrix_;            ///< computed on demand
   bool whole_record_ = false;          ///< if shares_: true if all currents cost less than the recorded rows
-  Terminals terminals_;                ///< if shares_: connections in the segment that a lane enters
-  std::vector<double> own_r_, own_x_;  ///< if shares_: impedances of the grid's own machines [pu]
+  Terminals terminals_;                ///< if shares_: connection status in the segment that a lane enters
+  std::vector<double> own_r_, own_x_;  ///< if shares_: machines' impedances with the grid's parameters [pu]
   std::vector<SharedRows> recorded_rows_;  ///< if shares_: rows of the recorded plants, per lane
   std::vector<PlantSlice> plants_;
   std::vector<LoadSlice> loads_;
@@ -194,7 +194,7 @@ class BatchKernel {
   std::vector<Weighed> weighed_;
   bool weighs_ = false;                ///< true if a coefficient of weighed_ exceeds 1 in any lane
   std::vector<int> moving_;            ///< states that are not constant in some lane
-  std::vector<int> wanted_, sampled_;  ///< states that the outputs need; those that are not constant
+  std::vector<int> wanted_, sampled_;  ///< states that the outputs need; those of them that are not constant
   std::vector<char> needed_;           ///< per state: 1 if the outputs need it
   std::vector<std::pair<std::size_t, std::size_t>>
       broadcast_;  ///< coefficients that the outputs need: first index, number

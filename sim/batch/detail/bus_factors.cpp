@@ -8,7 +8,7 @@
 namespace swingbank::sim::batch {
 
 namespace {
-constexpr double kLeastPivot = 1e-4;  ///< smallest accepted pivot, as a fraction of the row's largest entry
+constexpr double kLeastPivot = 1e-4;  ///< smallest accepted pivot, relative to the largest entry of U's row
 }
 
 bool BusFactors::factor(const Sparse& admittance) {

@@ -5,7 +5,7 @@
 namespace swingbank::sim::batch {
 
 namespace {
-constexpr std::size_t kCacheLimit = 4096;  // cached topologies: more than buses and branches of usual grids
+constexpr std::size_t kCacheLimit = 4096;  // topologies; more than the buses and branches of usual grids
 }
 
 std::vector<FarRows> far_rows(const grid::Grid& grid, int& rows) {

@@ -233,7 +233,7 @@ double moment_before(double switching_time) {
     return switching_time - plant::kBeforeSwitching;
 }
 
-/// Sets the matrices and setpoints of the lane's current segment and restarts the step control.
+/// Sets the matrices and set-points of the lane's current segment and restarts the step control.
 template <class T>
 void BatchKernel<T>::enter_segment(int lane) {
   auto& run = lanes_[static_cast<std::size_t>(lane)];

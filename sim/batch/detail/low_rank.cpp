@@ -6,7 +6,7 @@ namespace swingbank::sim::batch {
 
 namespace {
 constexpr double kSolveRounding =
-    1e-13;  ///< rounding error of both matrices, as a fraction of the largest entry
+    1e-13;  ///< rounding error of the matrices, as a fraction of the largest entry of `from`
 
 double square(double a, double b) { return a * a + b * b; }
 

@@ -1,5 +1,6 @@
 #pragma once
-// Low-rank updates of the reduced network's matrix, caused by a switching or by a machine's impedance.
+// Low-rank updates of the reduced network's matrix, caused by a switching or by a change of a machine's
+// impedance.
 #include <functional>
 #include <optional>
 

@@ -200,7 +200,7 @@ template <class T>
 void BatchKernel<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];
   Traits::store(angle_spread(y_.data()), angle);
-  // The voltage search may succeed with a shorter step.
+  // With the next, shorter step, Newton's method starts from 1 pu again.
   if (const unsigned again = per_lane_.fallen & ~accepted; again != 0) begin_search(per_lane_, again, 1.0);
   per_lane_.fallen = 0;
   for (int l = 0; l < kLanes; ++l) {
