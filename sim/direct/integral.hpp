@@ -6,8 +6,8 @@
 
 namespace swingbank::sim::direct {
 
-/// Returns the integral from the first sample to each sample. Exact for a cubic through four neighbours, so
-/// that the error is of order step^4. Zero for fewer than four samples.
+/// Returns the integral from the first sample to each sample. Exact for cubics, so that the error is of
+/// order step^4. Zero for fewer than four samples.
 Eigen::VectorXd integral(const Eigen::VectorXd& f, double step);
 
 /// Least number of samples of a smooth segment. Shorter segments contain too little information.

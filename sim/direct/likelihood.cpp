@@ -39,7 +39,8 @@ class Posterior {
   }
   [[nodiscard]] Index unknowns() const { return static_cast<Index>(free_.size()) + kSteady; }
   [[nodiscard]] double degrees_of_freedom() const {
-    return static_cast<double>(residual_count(record_) - kSteady);  // one residual of the prior per parameter
+    return static_cast<double>(residual_count(record_) -
+                               kSteady);  // the prior adds one residual per parameter
   }
   [[nodiscard]] std::vector<double> parameters(const VectorXd& z) const {
     std::vector<double> p = p_;
@@ -96,8 +97,8 @@ class Posterior {
   std::vector<ScaledParameter> scaled_;
 };
 
-/// Returns the minimum of gradient^T s + s^T matrix s/2 with z + s between low and high. Unknowns that would
-/// leave the limits end at them, and the others are solved for again.
+/// Returns the step s that minimises gradient^T s + s^T matrix s/2 with z + s between low and high. Unknowns
+/// that would exceed their limits are set to them, and the others are solved for again.
 VectorXd bounded_step(const Eigen::MatrixXd& matrix, const VectorXd& gradient, const VectorXd& z,
                       const VectorXd& low, const VectorXd& high) {
   VectorXd step = VectorXd::Zero(z.size());
@@ -134,12 +135,12 @@ VectorXd second_derivative(const Posterior& posterior, const VectorXd& z, const 
 }
 
 /// Search within the limits: Levenberg-Marquardt steps with geodesic acceleration (Transtrum and Sethna,
-/// arXiv:1201.5885) on the sum of squares whose gains and voltage are those of the step's start. Where no
-/// step is left, the parameters solve the likelihood's equations J^T r = 0.
+/// arXiv:1201.5885) on the sum of squares with the filter gains and the voltage of the step's start. At
+/// convergence, the parameters satisfy the likelihood equations J^T r = 0.
 MostProbable search(const Effect& machine, const NoisyRecord& record, const std::vector<double>& start,
                     std::span<const ParameterPrior> free, const LikelihoodOptions& options) {
-  // Predicted decrease of the sum of squares below which the search ends. The sum is twice a log-likelihood,
-  // so that such a decrease says nothing about the parameters.
+  // Predicted decrease of the sum of squares below which the search ends. The sum is -2 log-likelihood, so
+  // that such a decrease is statistically insignificant.
   constexpr double kSettledDecrease = 1e-3;
   constexpr double kMostCurved = 0.375;  // longest acceleration, relative to the step (same source)
   constexpr double kLeastDamping = 1e-6, kMostDamping = 1e9;

@@ -22,14 +22,14 @@ ParameterPrior uniform_prior(int index, double low, double high);
 /// Maximum a posteriori estimate of the parameters.
 struct MostProbable {
   std::vector<double> p;  ///< all parameters of the effect
-  double chi_square = 0;  ///< reduced chi-square with steady state and prior; about 1 for a correct model
+  double chi_square = 0;  ///< chi2 per degree of freedom, with steady state and prior; about 1 if correct
   double cost = 0;        ///< -2 times the logarithm of the posterior, up to a constant
   int iterations = 0;     ///< number of steps
 };
 /// Effort of the maximum a posteriori estimate.
 struct LikelihoodOptions {
   int iterations = 60;    ///< largest number of steps
-  double longest = 13.0;  ///< length of the segment after the event [s]
+  double longest = 13.0;  ///< maximum length of the compared record after the event [s]
 };
 
 /// Whether the likelihood supports the machine: at most kMostFlowing states, at most 20 parameters, and a

@@ -143,8 +143,8 @@ class Residuals : public DualCostFunction<Residuals> {
   VectorXd scale_;
 };
 
-/// Returns the RMS residual [pu] up to which a fit counts as exact. It is the larger of the integration error
-/// of a single-precision record and three standard deviations of P before the event.
+/// Returns the RMS residual [pu] up to which a fit counts as exact: three standard deviations of P before the
+/// event, but at least the integration error with a record in single precision.
 double exact(const Recording& record) {
   constexpr double kIntegration = 1e-5, kOfNoise = 3;  // [pu]; standard deviations
   const std::size_t n = std::max<std::size_t>(2, before_first_leap(record));

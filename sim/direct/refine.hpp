@@ -19,12 +19,12 @@ struct Refined {
 /// Effort of the least-squares estimate.
 struct RefineOptions {
   int iterations = 25;   ///< largest number of iterations, including rejected steps
-  double longest = 6.0;  ///< length of the segment [s]
+  double longest = 6.0;  ///< maximum length of the segment, from the last voltage step [s]
 };
 
 /// Fits the parameters `free` (indices) within `low` and `high`; the others keep their value in `start`.
 /// `machine`: an effect of the machine slot with its voltage behind a constant impedance. The rotor angle at
-/// the first sample and the states at the segment's start are fitted as well. H and D have no influence here.
+/// the first sample and the fluxes at the segment's start are fitted as well. H and D have no influence here.
 /// Every second sample is compared: the current, multiplied by the reactance, and the field current if
 /// recorded.
 Refined refine(const Effect& machine, const Recording& record, std::vector<double> start,

@@ -16,8 +16,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLongest = 6.0;  ///< segment length [s]; later samples contain little information
-constexpr int kAngles = 161, kKnees = 61, kReactances = 201;  ///< grid points of the three searches
+constexpr double kLongest = 6.0;  ///< maximum segment length [s]; later samples contain little information
+constexpr int kAngles = 161, kKnees = 61,
+              kReactances = 201;   ///< grid points of the searches for angle, A and X'q
 constexpr double kSaliency = 2.4;  ///< largest (Xq - X'')/(1 + ks Se) in the search [pu]
 
 /// Least-squares solution of columns x = target with scaled columns; `left`: root mean square residual.
@@ -34,8 +35,9 @@ Solved solve(const MatrixXd& columns, const VectorXd& target, double samples) {
 
 /// Field circuit and d-axis damper, linear for a given angle:
 ///   int psi_d = -T''do (psi_d - psi_d0) + T''do gd1/T'do J + int J/T'do - (X'd - X'') int i_d + E'q0 t,
-/// with J the integral of Efd - Ifd. Every column is independent of the angle, or the sum of two
-/// such columns times its cosine and sine, so that their triangular factor is computed once.
+/// with J the integral of Efd - Ifd and gd1 = (X'' - Xl)/(X'd - Xl). Every column is independent of the
+/// angle, or a sum of two such columns times the angle's cosine and sine. Their triangular factor is
+/// therefore computed once.
 class DirectAxis {
  public:
   explicit DirectAxis(const Turning& t) : samples_(static_cast<double>(t.V.size())) {
@@ -147,9 +149,9 @@ struct QuadratureAxis {
 };
 /// Equation of the q axis with both dampers, integrated twice:
 ///   iint psi_q = -A1 int psi_q - A2 psi_q - (Xq - X'') iint i_q - B1 int i_q
-///                - ks iint sigma - r ks int sigma + straight line
-/// with sigma = psi_q Se and ks = (Xq - Xl)/(Xd - Xl). ks depends on Xq and is iterated; three iterations
-/// suffice.
+///                - ks iint sigma - C1 int sigma + straight line
+/// with sigma = psi_q Se and ks = (Xq - Xl)/(Xd - Xl). Fitted: A1, A2, Xq - X'', B1, C1, straight line. ks
+/// depends on Xq and is iterated; four passes suffice.
 QuadratureAxis quadrature(const Axes& axes, double step, double A, double B, const RoundRotor& r) {
   const Index n = axes.psi_q.size();
   VectorXd saturation(n);

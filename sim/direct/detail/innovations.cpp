@@ -22,8 +22,8 @@ struct InputDerivatives {
   States<double> derivative;  ///< dx/dt
 };
 
-/// Linear equations of a sample about the filter's state: y = C x + D n + v, x' = F x + G n. n: noise of the
-/// played-in voltage; v: noise of the outputs.
+/// Linear equations of a sample about the filter's state: y = C x + D n + v and, for the next
+/// sample, F x + G n. n: noise of the played-in voltage; v: noise of the outputs.
 struct Linear {
   StateMatrix F = StateMatrix::Zero();
   FromInputs G = FromInputs::Zero();
@@ -80,7 +80,7 @@ class Linearised {
   }
 
  private:
-  /// Relative uncertainty of an extrapolated difference.
+  /// Relative uncertainty of the difference between an extrapolated voltage and the adjacent sample.
   static constexpr double kUnsure = 0.25;
 
   InputDerivatives derivatives(const States<double>& x, const Inputs& u) {
@@ -121,8 +121,8 @@ class Linearised {
     l.F = l.F.isZero(0) ? F : (F * l.F).eval();
     plain_.integrate(x, s.derivative, over);
   }
-  /// Half of the effect of a sample's noise occurs before the sample, half after it. The state excludes the
-  /// first half, so that the equations keep their form.
+  /// A sample's noise acts half in the interval before the sample and half in the interval after it. The
+  /// state excludes the first half, which therefore enters y through D.
   static void halve(Linear& l) {
     l.half = 0.5 * l.G;
     l.D += 0.5 * l.C * l.G;
@@ -136,7 +136,8 @@ class Linearised {
     covariance += moved * moved.transpose();
   }
   /// Adds the covariance of a voltage step at an unknown time between two samples. A uniform distribution of
-  /// this time has the variance step^2/12. The extrapolated voltages on both sides are uncertain as well.
+  /// this time has the variance T^2/12, T being the sampling interval. The extrapolated voltages on both
+  /// sides are uncertain as well.
   void unsure_step(const States<double>& x, std::size_t k, StateMatrix& covariance) {
     const Interval& i = record_.behind[k];
     open(x, i.before, i.after, record_.step / std::sqrt(12.0), covariance);
@@ -174,7 +175,7 @@ OutputMatrix covariance(const NoisyRecord& record, const Linear& l, const StateM
   const double input = record.noise.phasor() * record.noise.phasor();
   OutputMatrix S = l.C * P * l.C.transpose() + input * l.D * l.D.transpose();
   S.diagonal() += variances(record.noise, l.y[kIfd]);
-  if (record.outputs < kOutputs) {  // not recorded: as if measured with infinite variance
+  if (record.outputs < kOutputs) {  // Ifd is not recorded: as if measured with infinite variance
     S.row(kIfd).setZero();
     S.col(kIfd).setZero();
     S(kIfd, kIfd) = 1;

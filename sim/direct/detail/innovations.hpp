@@ -1,8 +1,8 @@
 #pragma once
 // Innovations of a Kalman filter on a noisy record. The noise of the played-in voltage acts immediately
 // through the stator equations, and later through the rotor states. The innovations contain both effects and
-// are white at the true parameters. Minus half of the sum of their squares and of the logarithm of their
-// covariance's determinant is therefore the log-likelihood, up to a constant.
+// are white at the true parameters. Up to a constant, the log-likelihood is therefore
+// -(r^T r + ln det S) / 2, with the whitened innovations r and the covariance S of the innovations.
 #include <Eigen/Core>
 #include <span>
 #include <vector>
@@ -22,7 +22,7 @@ struct Gain {
 struct Filtered {
   std::vector<Gain> gains;
   std::vector<OutputVector> white;  ///< whitened innovations
-  double log_determinant = 0;       ///< of the covariance of all innovations
+  double log_determinant = 0;       ///< ln det of the covariance of all innovations
   /// The record without its most probable noise. Sensitivities are computed with its voltage. With the noisy
   /// voltage they would be correlated with the innovations, and the fit would be biased.
   NoisyRecord likely;
@@ -38,8 +38,8 @@ struct ScaledParameter {
   int index = 0;  ///< index in the effect's parameters
   double scale = 1;
 };
-/// Residuals with the gains and the voltage of a filter, at the filter's own point: the steady residuals,
-/// then the whitened innovations. Unknowns: the parameters, then the operating point.
+/// Residuals at the parameters and the operating point of a filter, with its gains and voltage: the steady
+/// residuals, then the whitened innovations. Unknowns: the parameters, then the operating point.
 struct LinearisedResiduals {
   Eigen::VectorXd value;
   /// Residuals x unknowns.
@@ -51,8 +51,8 @@ LinearisedResiduals linearise(const Effect& machine, const NoisyRecord& record, 
                               const std::vector<double>& p, const std::array<double, kSteady>& steady,
                               std::span<const ScaledParameter> parameters);
 
-/// Returns the residuals at another point, with the same gains and voltage. `response`: of the filter's
-/// point.
+/// Returns the residuals at other parameters and another operating point, with the same gains and voltage.
+/// `response`: LinearisedResiduals::response.
 Eigen::VectorXd residuals(const Effect& machine, const NoisyRecord& record, const Filtered& filtered,
                           const std::vector<std::array<double, kOutputs>>& response,
                           const std::vector<double>& p, const std::array<double, kSteady>& steady);

@@ -1,5 +1,5 @@
 #pragma once
-// Cost function and solver options of the search without noise.
+// Cost function and solver options of the fit to a record without noise.
 #include <ceres/ceres.h>
 
 #include <algorithm>

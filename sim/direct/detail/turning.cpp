@@ -8,7 +8,7 @@
 namespace swingbank::sim::direct {
 namespace {
 using Complex = std::complex<double>;
-constexpr double kNoVoltage = 1e-6;  ///< voltage at a terminal with a bolted fault [pu]
+constexpr double kNoVoltage = 1e-6;  ///< lower limit of V in the current S*/V, for bolted faults [pu]
 
 Eigen::VectorXd column(const std::vector<double>& x, std::size_t first, std::size_t count) {
   return Eigen::Map<const Eigen::VectorXd>(x.data() + first, static_cast<Eigen::Index>(count));
