@@ -52,7 +52,7 @@ class DydReader {
     }
   }
 
-  /// Returns bus and id of a unit's record: model, bus, name, kV, id.
+  /// Returns bus and id of a unit's record, which begins with: model, bus, name, kV, id.
   [[nodiscard]] static std::optional<Key> key_of(const Line& line) {
     if (!line.colon || line.head.size() < 5) return std::nullopt;
     const auto bus = psse::parse_number(line.head[1].text);

@@ -45,13 +45,13 @@ std::vector<std::string> fields(const std::string& text, std::size_t least, std:
   auto part = fields(text);
   if (part.size() >= least && part.size() <= most) return part;
   problems.add(fmt::format("{} fields in '{}'", part.size(), text), where, "the form is " + form,
-               "give every field");
+               "write it in this form");
   return {};
 }
 
 /// Returns the branches between two buses with this circuit id. Of a three-winding transformer that connects
-/// both buses, this is the winding at the first bus. For three buses, returns every winding in service of the
-/// transformer between them.
+/// both buses, this is the winding at the first bus. For three buses, returns the windings in service of the
+/// transformer between them, or all its windings if none is in service.
 std::vector<int> branches_named(const std::vector<std::string>& ends, const std::string& circuit,
                                 const network::Network& network) {
   const auto bus_of = [&](int index) -> const network::Bus& {
@@ -151,7 +151,8 @@ std::vector<network::LineTrip> read_line_trip(const std::string& text, const net
   if (part.size() == 5 && !pair.empty() && !three.empty())
     problems.add(fmt::format("both a branch {}-{} circuit {} and a transformer {}-{}-{} circuit {}", part[0],
                              part[1], part[2], part[0], part[1], part[2], part[3]),
-                 where, "the text fits both", "give T_CLOSE of the transformer, or T_OPEN alone");
+                 where, "the text fits both",
+                 "for the transformer, append T_CLOSE; for the branch, give T_OPEN alone");
   if (!whole && pair.size() > 1)
     problems.add(fmt::format("{} transformers {}-{} circuit {}", pair.size(), part[0], part[1], part[2]),
                  where, "each has another third bus", "add the third bus: FROM:TO:THIRD:CKT:T_OPEN");

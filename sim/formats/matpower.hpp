@@ -24,8 +24,8 @@ network::Network read_matpower(const std::filesystem::path& file, double frequen
 network::Network parse_matpower(const std::string& text, const std::string& name, double frequency_hz);
 
 /// Reads a network: a .m by read_matpower, an .epc by read_epc, any other file by read_raw. A .m and an .epc
-/// require RawOptions::frequency_hz. For a .raw that contains a frequency, the option must be absent or equal
-/// to it.
+/// require RawOptions::frequency_hz, unless `needs_frequency` is false. For a .raw that contains a frequency,
+/// the option must be absent or equal to it.
 network::Network read_network(const std::filesystem::path& file, const RawOptions& options = {});
 /// As read_network(), but returns the errors of a .raw or .epc. Throws InputError on any error of a .m.
 RawSurvey survey_network(const std::filesystem::path& file, const RawOptions& options = {});

@@ -104,7 +104,7 @@ void EpcReader::divide() {
       }
       ++at;
     }
-    if (problems_.list().size() > 3) problems_.raise();  // another kind of file
+    if (problems_.list().size() > 3) problems_.raise();  // probably another kind of file
   }
   if (std::ranges::none_of(sections_, [](const Section& s) { return s.name == "bus"; }))
     problems_.add("no 'bus data' section", file_, "a network has buses", "give a complete .epc");

@@ -24,7 +24,7 @@ namespace swingbank::sim::formats {
 /// - shunt, at a bus or at an end of a branch;
 /// - svd: a shunt g + jb, which can switch its steps within its band if its type is 1;
 /// - generator, which regulates its own or another bus to vsched;
-/// - converter of a dc line, which becomes its power at the file's voltages.
+/// - converter of a dc line, which is replaced by its power at the file's voltages.
 ///
 /// Ignored, because they do not affect the equations: areas, zones, owners, interfaces, transactions,
 /// balancing authorities, substations, injection groups, ratings, dates, tap controls (taps are fixed).

@@ -55,7 +55,8 @@ struct RawOptions {
 ///
 /// Changed, with a remark:
 /// - zero-impedance branches are given an impedance (raise_impedance);
-/// - dc lines, FACTS and GNE devices and induction machines become their power at the file's voltages;
+/// - dc lines, FACTS and GNE devices and induction machines are replaced by their power at the file's
+///   voltages;
 /// - VM <= 0 and VMSTAR <= 0 become 1 pu; MBASE <= 0 becomes SBASE, and so does SBASE1-2 <= 0 if CZ = 1;
 /// - a generator with VS <= 0 regulates its own bus to VM;
 /// - if the bus of IREG or SWREG is missing, the generator or shunt regulates its own bus;
@@ -63,7 +64,7 @@ struct RawOptions {
 /// - the changes of settle_generators and settle_islands.
 ///
 /// Ignored, because they do not affect the equations:
-/// - lines that begin with '@!', text after '#' or '!' in place of a field;
+/// - lines that begin with '@!', text after '#' or '!' where a field would begin;
 /// - system-wide data, names of areas, zones and owners, inter-area transfer, multi-section line groupings;
 /// - ratings, names of branches, vector groups, voltage limits;
 /// - tap and load-flow controls (taps are fixed), substations without split buses.
@@ -90,8 +91,8 @@ struct RawSurvey {
   std::vector<Problem> faults;                   ///< errors, with their lines
 };
 /// Reads a .raw or .rawx as read_raw does, but continues after errors and returns them. The steps that
-/// complete the network (devices, duplicates, islands) are omitted. Throws InputError if the header has no
-/// known version.
+/// complete the network (devices, duplicates, islands) are omitted. Throws InputError on errors of the header
+/// and the title lines.
 RawSurvey survey_raw(const std::filesystem::path& file, const RawOptions& options = {});
 /// The same for a string; `name` replaces the file name in messages.
 RawSurvey parse_raw_survey(const std::string& text, const std::string& name, const RawOptions& options = {});
@@ -107,7 +108,7 @@ struct DyrRecord {
   std::vector<double> values;  ///< parameters, in the order of the file
   int line;                    ///< first line in the file
   std::string user{};          ///< name of a user-written model (model USRMDL and variants), otherwise empty
-  Problems faults{};           ///< errors of unquoted text or .dyd columns, for a model that is used
+  Problems faults{};           ///< errors of unquoted text or .dyd columns, reported if the model is used
   std::vector<int> empty{};    ///< empty parameters, counted from 1; their value is zero
   std::size_t codes = 0;       ///< user-written models: number of PSS/E codes at the beginning of `values`
   /// Text in place of the bus number (`bus` is 0): an extended bus name, or equipment without a bus (dc
@@ -137,9 +138,9 @@ void add_model_map(DyrOptions& options, const std::string& text, const std::stri
 DyrOptions read_dyr_options(Config& config, const std::string& prefix);
 
 /// Reads a .dyr file. Records end with '/' and may span lines. Comments are: text after the '/', lines that
-/// begin with '//' or '@!', and text after '#' or '!' in place of a field. 3*0.5 means 0.5 0.5 0.5. A line
-/// that begins like a record (bus number, 'MODEL'), or the end of the file, also ends a record, which is then
-/// `unended`. Ctrl-Z, a line with Q alone and a record with 0 alone end the file.
+/// begin with '//' or '@!', and text after '#' or '!' where a field would begin. 3*0.5 means 0.5 0.5 0.5. A
+/// line that begins like a record (bus number, 'MODEL'), or the end of the file, also ends a record, which is
+/// then `unended`. Ctrl-Z, a line with Q alone and a record with 0 alone end the file.
 ///
 /// Non-numeric parameters are stored in DyrRecord::faults or, if quoted, in DyrRecord::texts. All other
 /// errors are thrown together as an InputError, with line numbers. An ignored or mapped name that does not

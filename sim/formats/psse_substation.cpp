@@ -1,7 +1,7 @@
-// Reader of the substations of versions 34 and 35: nodes and switches inside the buses. The other sections
-// describe the grid with closed switches merged, so a substation adds no equations if every bus is connected.
-// A bus is refused if open switches split it, or if a closed switch joins it to another bus. Source: PSS/E
-// data format manual, "Substation Data".
+// Reader of the substations of versions 34 and 35: nodes and switches inside the buses. In the other
+// sections, the nodes that closed switches connect are one bus. A substation therefore adds no equations if
+// the nodes of every bus are connected. A bus is refused if open switches split it, or if a closed switch
+// joins it to another bus. Source: PSS/E data format manual, "Substation Data".
 #include <functional>
 
 #include "sim/formats/detail/psse_raw.hpp"

@@ -34,10 +34,10 @@ std::vector<std::string> lines_of(const std::string& text);
 bool erase_byte_order_mark(std::vector<std::string>& lines);
 /// Returns the text without leading and trailing blanks and line ends.
 std::string trimmed(std::string_view text);
-/// Characters that begin a comment at the end of a line of a .raw or .dyr, in place of a field.
+/// Characters that begin a comment at the end of a line of a .raw or .dyr, where a field would begin.
 constexpr std::string_view kCommentMarks = "#!";
-/// Splits one line. An open quote becomes a problem. One of `comment_marks` in place of a field ends the
-/// line. After a comma, a name or id among the first four fields may begin with such a character.
+/// Splits one line. An open quote becomes a problem. One of `comment_marks` where a field would begin ends
+/// the line. After a comma, a name or id among the first four fields may begin with such a character.
 Record split(const std::string& line, int number, const std::string& file, Problems& problems,
              std::string_view comment_marks = {});
 

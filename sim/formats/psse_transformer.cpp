@@ -218,7 +218,7 @@ void RawReader::correction_table(const Record& first) {
       if (over) break;
       points.emplace_back(t, Complex(re, im));
     }
-    // An incomplete line, or one whose last point is zero, ends the table.
+    // An incomplete line, or one with a zero point, ends the table.
     if (over || f.size() < from + 6 * width) break;
     auto more = next();
     if (!more || more->fields.empty()) break;
@@ -230,8 +230,8 @@ void RawReader::correction_table(const Record& first) {
     record = std::move(*more);
   }
   if (!std::ranges::is_sorted(points, {}, [](const auto& p) { return p.first; }))
-    problems_.add("the points of correction table " + std::to_string(head.integer(0, "table number", 0)),
-                  head.where(), "T must ascend", "sort them by T");
+    problems_.add("unsorted correction table " + std::to_string(head.integer(0, "table number", 0)),
+                  head.where(), "the T of its points must ascend", "sort the points by T");
 }
 
 /// Corrects impedances at the present tap or angle. T is a ratio if all points are between 0.5 and 1.5, else
@@ -261,7 +261,7 @@ void RawReader::correct_impedances() {
     const Complex z = Complex(b.r, b.x) * factor;
     if (z == Complex{}) {
       problems_.add("correction table " + std::to_string(c.table), c.where,
-                    "its factor is zero at the present tap", "correct the table");
+                    "its factor is zero at the present tap or angle", "correct the table");
       continue;
     }
     b.r = z.real();

@@ -7,16 +7,16 @@ namespace swingbank::sim::formats::dyd {
 
 /// Conversion of a column.
 enum class Use {
-  value,      ///< copied to a column of the .dyr
-  mva_power,  ///< copied, multiplied by the ratio of the turbine's rating to the machine's base
-  per_mva,    ///< copied, divided by this ratio
-  again,      ///< repeats the limit of an earlier column; must not be narrower, unless it is 0
-  rating,     ///< column of the .dyr for the turbine's rating [MW], which precedes the values in a .dyd
-  off,        ///< no counterpart; must have the value that disables it
-  open,       ///< a limit without counterpart; must be too wide to act
-  free,       ///< no counterpart and no influence on the model
-  resistance,
-  reactance,  ///< impedance of the machine, which PSS/E keeps in the .raw
+  value,       ///< copied to a column of the .dyr
+  mva_power,   ///< copied, multiplied by the ratio of the turbine's rating to the machine's base
+  per_mva,     ///< copied, divided by this ratio
+  again,       ///< repeats the limit of an earlier column; must not be narrower, unless it is 0
+  rating,      ///< column of the .dyr for the turbine's rating [MW], which precedes the values in a .dyd
+  off,         ///< no counterpart; must have the value that disables it
+  open,        ///< a limit without counterpart; must be too wide to act
+  free,        ///< no counterpart and no influence on the model
+  resistance,  ///< resistance of the machine, which PSS/E keeps in the .raw
+  reactance,   ///< reactance of the machine, which PSS/E keeps in the .raw
 };
 
 /// A column of a .dyd model.
@@ -31,7 +31,7 @@ struct Column {
 /// A .dyd model and its counterpart in a .dyr.
 struct Model {
   std::string_view dyd, dyr;
-  std::string_view base;  ///< "mva" of a machine, "mwcap" of a turbine, empty: none
+  std::string_view base;  ///< keyword of its base: "mva" (machine), "mwcap" (turbine), empty: none
   bool named = true;      ///< values are written with their names
   bool in_order = true;   ///< values without names are accepted, because their order is documented
   int columns = 0;        ///< number of columns of the .dyr

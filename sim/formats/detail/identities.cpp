@@ -29,8 +29,8 @@ bool Identities::once(const std::string& identity, const psse::Fields& fields) {
     problems_.add(identity + " appears twice", fields.where(), "it is " + first,
                   identity.starts_with("bus ")
                       ? "remove one, or leave the later one out with --drop-refused"
-                      : "remove one or give it another id; --repeated voltages keeps it under a new id where "
-                        "the file's voltages show it, and --drop-refused leaves it out");
+                      : "remove one or give it another id; --repeated voltages keeps it under a new id if "
+                        "this agrees with the file's voltages, and --drop-refused leaves it out");
   return !options_.drop_refused;
 }
 
