@@ -1,5 +1,6 @@
 #pragma once
-// Names of a case's options in configs and on the command line, in the order of their enumerators.
+// Names of the values of a case's options in configs and on the command line, in the order of their
+// enumerators.
 #include <algorithm>
 #include <string>
 #include <vector>

@@ -237,7 +237,9 @@ class GridMaker {
         problems.add("a second model, " + what, where,
                      "it already has " + std::string(other->block.effect->dyr_name), "keep one of them");
     }
-    if (!any) grid_.network.remark("models of loads out of service are ignored", what + " (" + where + ")");
+    if (!any)
+      grid_.network.remark("models of loads that are missing or out of service are ignored",
+                           what + " (" + where + ")");
   }
   /// Adds a model of a switched shunt. A record without an id applies to the first switched shunt of its bus.
   void add_shunt_model(const Effect& effect, formats::DyrRecord record, const std::string& where,
@@ -254,7 +256,8 @@ class GridMaker {
     };
     const auto shunt = std::ranges::find_if(grid_.network.shunts, is_its);
     if (shunt == grid_.network.shunts.end()) {
-      grid_.network.remark("models of switched shunts out of service are ignored", what + " (" + where + ")");
+      grid_.network.remark("models of switched shunts that are missing or out of service are ignored",
+                           what + " (" + where + ")");
       return;
     }
     model.id = shunt->id;

@@ -21,7 +21,7 @@ struct Grid {
   std::vector<plant::Plant> plants;        ///< plants, in the order of their generators
   std::vector<plant::Consumer> loads;      ///< loads with a dynamic model
   network::PowerFlowOptions flow_options;  ///< options with which `flow` was solved
-  library::EffectLibrary library;          ///< owns the user-defined models of its plants; source of attach()
+  library::EffectLibrary library;  ///< owns the plants' user-defined models; attach() takes effects from it
 
   /// Returns the sorted indices into Network::loads of the loads with a dynamic model.
   [[nodiscard]] std::vector<int> modelled_loads() const;

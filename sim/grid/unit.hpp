@@ -45,7 +45,7 @@ struct Unit {
   double frequency = 60.0, system_mva = 100.0;  ///< [Hz], [MVA]
   std::optional<Dispatch> dispatch = {};  ///< none if the unit is out of service or its bus has no voltage
   double kv = 0.0;                        ///< nominal voltage of the measured bus [kV]; 0: not given
-  std::vector<std::string> defaults;      ///< names of effects that have default values
+  std::vector<std::string> defaults;      ///< names of replacement effects that have their defaults
   std::vector<std::string> notes;         ///< messages about interpreted and dropped data
 };
 

@@ -8,9 +8,10 @@
 namespace swingbank::sim::grid {
 namespace {
 
-constexpr double kSameRatio = 1e-6;  ///< limits the circulating current to 1e-5 pu at X = 0.1 pu
+constexpr double kSameRatio = 1e-6;  ///< tolerance of equal ratios: circulating current 1e-5 pu at X = 0.1 pu
 
-/// Returns the buses of the shortest path from `machine` to `far`; empty if there is none.
+/// Returns the buses of the shortest path through transformers from `machine` to `far`; empty if there is
+/// none.
 std::vector<int> way_of_buses(const network::Network& n, int machine, int far) {
   std::vector<int> before(n.buses.size(), -1);
   before[static_cast<std::size_t>(machine)] = machine;

@@ -100,7 +100,7 @@ TEST(StaticVar, TheOtherFormNamesTheShunt) {
   EXPECT_TRUE(says(grid, "mechanically switched shunts are not switched; Flag2 = 1: the slope is Xc1"));
   const Grid other = load_from(with_shunt(), kPlants + "103 'SVSMO1T3' '7' 103 0 0" + kEight + kRest);
   EXPECT_TRUE(other.loads.empty());
-  EXPECT_TRUE(says(other, "models of switched shunts out of service are ignored"));
+  EXPECT_TRUE(says(other, "models of switched shunts that are missing or out of service are ignored"));
 }
 
 TEST(StaticVar, ReportsEveryError) {
@@ -116,7 +116,7 @@ TEST(StaticVar, ReportsEveryError) {
   EXPECT_THAT(formats::sentences_of([&] { load_from(with_shunt(), kPlants + text); }),
               HasSubstr("SVSMO1T2 parameter 19 = 'B'"));
   const Grid none = load_from({}, kPlants + record("103"));
-  EXPECT_TRUE(says(none, "models of switched shunts out of service are ignored"));
+  EXPECT_TRUE(says(none, "models of switched shunts that are missing or out of service are ignored"));
 }
 
 }  // namespace
