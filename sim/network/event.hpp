@@ -80,7 +80,8 @@ struct Segment {
 };
 /// Returns the segments in order of time; simultaneous switchings form one segment. `switching_times`:
 /// further switching times, from effects [s]. Throws InputError if an event ends before it starts, starts
-/// before 0, names missing equipment, or faults a bus twice at the same time.
+/// before 0, names equipment that is missing or out of service, has an invalid value, or overlaps with a
+/// fault or trip of the same equipment.
 std::vector<Segment> segments(const Event& event, const Network& network,
                               const std::vector<double>& switching_times = {});
 

@@ -355,7 +355,7 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
   }
   const double size = newton.mismatch();
   if (size <= options.tolerance)
-    throw InputError({"the power flow balances only with voltages near 0", network.origin,
+    throw InputError({"the power flow balances only with a voltage below 0.2 pu", network.origin,
                       "this is not an operating point: the grid cannot supply its loads",
                       "check loads and impedances, or keep the file's voltages (--start file)"});
   throw InputError(
@@ -364,7 +364,8 @@ void solve(Newton& newton, const Network& network, const PowerFlowOptions& optio
            " MVA)" + (limited ? ", with generators at their reactive limits" : ""),
        network.origin,
        std::to_string(options.limit) +
-           " iterations did not converge, neither from the file's voltages nor from a flat start",
+           " iterations did not converge, neither from the file's voltages nor from a flat start, and "
+           "more iterations with short steps did not either",
        std::string("check loads, dispatch and impedances near that bus") +
            (limited ? ", ignore the limits (--q-limits ignore)" : "") +
            ", or keep the file's voltages (--start file)"});

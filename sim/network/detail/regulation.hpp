@@ -30,7 +30,7 @@ class Regulation {
  public:
   explicit Regulation(const Network& network);
   [[nodiscard]] const Roles& roles() const { return roles_; }
-  /// Returns per bus the MVA of the generators in service.
+  /// Returns the sum of the machine bases in service at each bus [MVA].
   [[nodiscard]] const std::vector<double>& supply() const { return supply_; }
   /// Moves buses to a reactive limit, or from a limit back to regulation. `reactive`: reactive power of a
   /// bus's generators [pu]; `voltage`: magnitude at a bus [pu]. Returns false if nothing changed.
