@@ -51,8 +51,8 @@ class Recorder {
     run.bus_theta.assign(run.buses.size() * run.samples, 0.0);
     for (std::size_t b = 0; b < angle_.size(); ++b) angle_[b] = std::arg(grid.flow.voltage[b]);
   }
-  /// Records sample k from y, in which the system's bolted buses have zero voltage. Returns false at the end
-  /// of the run.
+  /// Records sample k from y, in which the system's bolted buses have zero voltage. Returns false if the run
+  /// ends at this sample, by a loss of synchronism or a value that is not finite.
   bool record(int k, const ReferenceSystem& system, const double* y) {
     const double* v = y + plants_.states();
     for (std::size_t b = 0; b < angle_.size(); ++b)

@@ -33,7 +33,8 @@ struct ReferenceRun : Trajectory {
 };
 
 /// Simulates an event. Throws InputError if the event does not apply to this network (unknown bus; an island
-/// without machine and fault) or an operating point is infeasible.
+/// with converters but neither machine nor fault), if an operating point is infeasible, or if the network
+/// equations have no voltage solution after a switching.
 ReferenceRun run_reference(const grid::Grid& grid, const network::Event& event,
                            const ReferenceOptions& options);
 

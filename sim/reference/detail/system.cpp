@@ -24,8 +24,8 @@ int delta_state(const Effect& machine) {
   return -1;
 }
 
-/// Returns the buses of islands that have converters but neither machine nor fault; their equations have no
-/// solution. A converter follows a voltage and does not set one.
+/// Returns the buses of islands that have converters but neither machine nor fault. The equations of such an
+/// island have no solution, because a converter follows a voltage and does not set one.
 std::vector<int> cut_off(const grid::Grid& grid, const network::Topology& topology) {
   const std::vector<int> island = network::islands(grid.network, topology.open);
   std::vector<bool> has_source(island.size() + 1, false);

@@ -128,7 +128,7 @@ class ReferenceSystem {
   int buses_;
   double last_moment_;  ///< latest time that effects may use [s]
   std::vector<bool> bolted_;
-  std::vector<int> open_;                    ///< branches without current, sorted
+  std::vector<int> open_;                    ///< indices of the open branches, sorted
   std::vector<int> island_;                  ///< island of each bus
   std::vector<double> connected_;            ///< connected fraction of each unit, 0 to 1
   std::vector<network::Setpoint> setpoint_;  ///< set-point changes of each unit
