@@ -93,7 +93,7 @@ void solve_factored(const T* a, T* b, std::size_t n) {
 }
 
 /// Computes the residual of V - (E(V) - z (G + jB) E(V)) = 0 into algebra_[0 .. 2K), for K nonlinear sources.
-/// `steady`: currents that the linear sources cause.
+/// `steady`: currents that the linear sources cause at the nonlinear ones.
 template <class T>
 void BatchKernel<T>::algebra_rest(Constants& k, const T* x, const T* steady) {
   const std::size_t count = nonlinear_.size();
@@ -248,7 +248,8 @@ unsigned BatchKernel<T>::search_voltages(Constants& k, const T* x, unsigned open
   return open;
 }
 
-/// Sets the initial voltage of the next search to `voltage` [pu] at every nonlinear source of some lanes.
+/// Sets the voltage from which Newton's method starts to `voltage` [pu], at every nonlinear source in the
+/// lanes of the bit mask `lanes`, and invalidates the factors of these lanes.
 template <class T>
 void BatchKernel<T>::begin_search(Constants& k, unsigned lanes, double voltage) const {
   const auto these = Traits::mask(lanes);

@@ -87,8 +87,8 @@ class BatchKernel {
     std::vector<T> vr, vi;   ///< voltages at nonlinear sources: start of Newton's method [pu]
     T last_moment;           ///< upper bound of the time passed to effects [s]
     std::vector<T> factors;  ///< factors of the Newton matrix; each lane renews its own
-    unsigned factored = 0;   ///< lanes with valid factors
-    unsigned fallen = 0;     ///< lanes in which Newton's method restarted from zero voltage in this step
+    unsigned factored = 0;   ///< bit mask: lanes with valid factors
+    unsigned fallen = 0;     ///< bit mask: lanes whose Newton's method restarted from V = 0 in this step
   };
 
   // one evaluation (equations.hpp)
@@ -221,8 +221,8 @@ class BatchKernel {
   std::vector<std::vector<double>> lane_r_, lane_x_;  ///< source impedances per lane
   std::vector<std::vector<char>> grounded_;           ///< per lane and source: 1 if its bus has V = 0
   std::vector<std::vector<double>> connected_;        ///< per lane and source: connected fraction
-  unsigned active_ = 0, fresh_ = 0;  ///< running lanes; lanes whose first stage needs evaluation
-  unsigned tripped_ = 0;             ///< lanes with a tripped plant
+  unsigned active_ = 0, fresh_ = 0;  ///< bit masks: running lanes; lanes whose first stage needs evaluation
+  unsigned tripped_ = 0;             ///< bit mask: lanes with a tripped plant
   int islands_ = 1;                  ///< number of islands of the unswitched grid
 };
 

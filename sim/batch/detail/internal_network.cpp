@@ -120,7 +120,7 @@ void InternalNetwork::assemble(Reduced& entry, const std::vector<double>& r,
       a(n, n) = 1.0;
     }
   const Eigen::MatrixXcd voltage =
-      a.partialPivLu().solve(injection);  // V at the sources' buses per unit of E
+      a.partialPivLu().solve(injection);  // V at the buses in buses_ per unit of E
   out.g.resize(static_cast<std::size_t>(plants * plants));
   out.b.resize(out.g.size());
   out.grounded.resize(static_cast<std::size_t>(plants));

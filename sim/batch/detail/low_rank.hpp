@@ -34,8 +34,8 @@ struct ByRowsAndColumns {
   std::function<Eigen::VectorXcd(int)> row, column;
 };
 /// Adds to `products` the update of M = matrix + products by changed impedances of the sources C (Woodbury):
-/// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:]. This avoids a solution of the whole network for every set of machine
-/// parameters.
+/// -M[:,C] (1 + dZ M[C,C])^-1 dZ M[C,:] with the changes dZ. This avoids a solution of the whole network for
+/// every set of machine parameters.
 void add_impedances(LowRank& products, const ByRowsAndColumns& matrix,
                     const std::vector<ImpedanceChange>& changes);
 void add_impedances(LowRank& products, const InternalMatrix& matrix,

@@ -1,13 +1,14 @@
 #pragma once
 // Low-rank update of the reduced network for a switching, in grids of many sources. A switching affects few
-// buses, and one factorisation of the whole network gives the response to their currents.
+// buses, and one factorisation of the whole network gives the response to currents into these buses.
 #include <Eigen/SparseLU>
 
 #include "sim/batch/detail/low_rank.hpp"
 
 namespace swingbank::sim::batch {
 
-/// Connection of a plant to its bus: its admittance on the network's base and on its own base [pu].
+/// Bus of a plant, and the plant's admittance on the network's base (`source`) and on its own base (`own`)
+/// [pu].
 struct Feed {
   int bus;
   Complex source, own;
