@@ -13,8 +13,8 @@ Eigen::VectorXd integral(const Eigen::VectorXd& f, double step);
 /// Least number of samples of a smooth segment. Shorter segments contain too little information.
 constexpr std::size_t kShortestStretch = 40;
 /// Returns the change of the voltage between two samples [pu] above which it is a step. It is a fifth of the
-/// record's largest change, but at least 0.002 pu and 6 standard deviations of the difference of two noisy
-/// samples.
+/// largest such change of the record, but at least 0.002 pu and 6 standard deviations of the difference of
+/// two noisy samples.
 double leap_limit(const Recording& record);
 /// Returns the first sample after the last voltage step; 0 if there is none.
 std::size_t behind_last_leap(const Recording& record);

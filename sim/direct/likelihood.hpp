@@ -45,8 +45,8 @@ MostProbable most_probable(const Effect& machine, const Recording& record, std::
 MostProbable most_probable_of(const Effect& machine, const Recording& record,
                               std::span<const std::vector<double>> candidates,
                               std::span<const ParameterPrior> free, const LikelihoodOptions& options = {});
-/// Returns the estimate of one search from a start near the truth, such as a network's estimate. If its
-/// reduced chi-square is more than noise explains, returns the best estimate from several starts.
+/// Returns the estimate of one search from a start near the truth, such as a neural network's estimate. If
+/// its reduced chi-square is more than noise explains, returns the best estimate from several starts.
 MostProbable most_probable_near(const Effect& machine, const Recording& record,
                                 const std::vector<double>& start, std::span<const ParameterPrior> free,
                                 const LikelihoodOptions& options = {});

@@ -31,7 +31,7 @@ struct Linear {
   Eigen::Matrix<double, kOutputs, kInputs> D;
   OutputVector y;
   States<double> next = {};
-  FromInputs half = FromInputs::Zero();      ///< effect of a sample's noise on the state before the sample
+  FromInputs half = FromInputs::Zero();      ///< effect of a sample's noise in the interval before it
   StateMatrix unsure = StateMatrix::Zero();  ///< covariance due to a voltage step before the next sample
 };
 
