@@ -100,7 +100,7 @@ class DydReader {
           out.values.push_back(static_cast<double>(*v));
       // PSS/E's model of the same name may have other columns or another order of columns.
       out.faults.add(
-          fmt::format("PSLF's model {}", name), where(line.number),
+          fmt::format("no counterpart of PSLF's model {}", name), where(line.number),
           "its columns are not publicly documented; these models can be read: " + dyd_models_text(),
           "leave it out with --ignore-model (of one unit: --drop), or map it with --map-model (--replace) "
           "to a model with as many parameters");
@@ -128,8 +128,9 @@ class DydReader {
         const std::string column = lower(trimmed(token.text));
         const auto found = std::ranges::find(model.in, column, &dyd::Column::name);
         if (found == model.in.end()) {
-          faults.add(fmt::format("{} of {}", column, model.dyd), where(line.number),
-                     "no column of that name is known", "remove it, or leave the model out with --drop");
+          faults.add(fmt::format("unknown column {} of {}", column, model.dyd), where(line.number),
+                     "it is not among the documented columns of the model",
+                     "remove it, or leave the model out with --drop");
           ++i;
           continue;
         }

@@ -104,7 +104,8 @@ int generator_named(const network::Network& network, const std::string& text, co
     problems.add("no generator " + text, where, "in service in " + network.origin + " are " + names,
                  "name one of these");
   else
-    problems.add("generator " + text, where, "several generators match: " + same, "name one of these");
+    problems.add("ambiguous generator " + text, where, "several generators match: " + same,
+                 "name one of these");
   return -1;
 }
 

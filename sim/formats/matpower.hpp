@@ -10,8 +10,8 @@ namespace swingbank::sim::formats {
 
 /// Reads a MATPOWER case. Throws InputError with every error of the file, each with its line number.
 ///
-/// Read: baseMVA, bus, gen, branch. Loads are constant power. Gs + jBs is the shunt's consumption and
-/// injection in MW and Mvar at 1 pu, as in MATPOWER. A branch with a ratio or an angle is a transformer;
+/// Read: baseMVA, bus, gen, branch. Loads are constant power. Gs is a shunt's consumption in MW and Bs
+/// its injection in Mvar at 1 pu. A branch with a ratio or an angle is a transformer;
 /// ratio 0 means 1. Parallel branches and several generators at a bus are numbered from '1'. A generator's
 /// machine base is mBase. A case has no machine impedance, so zr = zx = 0. A GENCLS model, whose X'd is zx,
 /// is refused later.

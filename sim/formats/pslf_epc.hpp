@@ -9,8 +9,8 @@
 namespace swingbank::sim::formats {
 
 /// Reads an .epc. Throws InputError with every error of the file, each with its line number. Errors in the
-/// division into sections, sbase or the frequency are reported alone. Changes to the
-/// data are recorded in Network::remarks.
+/// division into sections, sbase or the frequency are reported alone. Changes to the data are recorded in
+/// Network::remarks.
 ///
 /// The file begins with "title", "comments" and "solution parameters" (only sbase is used); each ends at a
 /// line '!'. Sections such as "bus data [count] ..." follow, up to "end". A record is "equipment : values". A
@@ -20,7 +20,7 @@ namespace swingbank::sim::formats {
 /// Read:
 /// - bus; load; branch (line sections in series are combined);
 /// - transformer with two windings, and with three (a star point at the file's internal bus, else at a new
-///   bus, numbered above all others); the ratio of a primary winding is tapp + tapfp - 1;
+///   bus, numbered above all others); the tap of a primary winding is tapp + tapfp - 1;
 /// - shunt, at a bus or at an end of a branch;
 /// - svd: a shunt g + jb, which can switch its steps within its band if its type is 1;
 /// - generator, which regulates its own or another bus to vsched;

@@ -57,7 +57,8 @@ struct RawOptions {
 /// - zero-impedance branches are given an impedance (raise_impedance);
 /// - dc lines, FACTS and GNE devices and induction machines are replaced by their power at the file's
 ///   voltages;
-/// - VM <= 0 and VMSTAR <= 0 become 1 pu; MBASE <= 0 becomes SBASE, and so does SBASE1-2 <= 0 if CZ = 1;
+/// - VM <= 0 and VMSTAR <= 0 become 1 pu; MBASE <= 0 becomes SBASE, and so do SBASE1-2, SBASE2-3
+///   and SBASE3-1 <= 0 if CZ = 1;
 /// - a generator with VS <= 0 regulates its own bus to VM;
 /// - if the bus of IREG or SWREG is missing, the generator or shunt regulates its own bus;
 /// - distributed generation inside a load is subtracted from its P and Q;
@@ -67,7 +68,7 @@ struct RawOptions {
 /// - lines that begin with '@!', text after '#' or '!' where a field would begin;
 /// - system-wide data, names of areas, zones and owners, inter-area transfer, multi-section line groupings;
 /// - ratings, names of branches, vector groups, voltage limits;
-/// - tap and load-flow controls (taps are fixed), substations without split buses.
+/// - tap and load-flow controls (taps are fixed), substations that neither split nor join buses.
 ///
 /// Refused, with section and line: a bus that is split by open switches of a substation, and buses that are
 /// joined by its closed switches. Out-of-service loads and shunts are dropped. Equipment at an isolated bus

@@ -13,8 +13,9 @@ namespace swingbank::sim::formats::psse {
 
 /// Columns, counted from 0, of the fields whose position depends on the version. Version 34 has twelve
 /// ratings in place of three in branches and transformer windings. Version 34 also adds a name to branches
-/// and appends the regulated node. Version 35 moves the node next to the regulated bus and adds an id to
-/// switched shunts. Switched shunts have no status before version 32, no RMPCT before 30 and no RMIDNT before
+/// and appends the regulated node NREG to generators and switched shunts. Version 35 moves NREG next to the
+/// regulated bus and adds an id to switched shunts. Switched shunts have no status before version 32, no
+/// RMPCT before 30 and no RMIDNT before
 /// 28. Before 28, branch records also describe transformers. Source: PSS/E data format manuals, "Power Flow
 /// Data"; for 24 to 28 MATPOWER, psse_parse.m.
 struct Columns {
