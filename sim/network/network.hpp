@@ -78,7 +78,7 @@ struct Generator {
   double q_min = -99.99, q_max = 99.99;  ///< reactive limits [pu on base_mva]
   double rt = 0.0, xt = 0.0;             ///< step-up transformer between machine and bus [pu on mva]; 0: none
   int regulated = -1;                    ///< index of the regulated bus; -1: its own
-  double share = 100.0;  ///< share of the reactive power of all generators that regulate this bus [%]
+  double share = 100.0;  ///< share of the reactive power of all generators that regulate one bus [%]
 };
 /// A change to a case that goes beyond reading it, with every place of the change.
 struct Remark {

@@ -78,7 +78,7 @@ class Newton {
         ties_(ties(n)),
         tie_current_(ties_.size()) {}
 
-  /// Sets the roles of the buses; the voltages are kept.
+  /// Sets the roles of the buses. Sets regulated magnitudes to their set-points; keeps all other voltages.
   void arrange(const Roles& roles) {
     roles_ = &roles;
     const int count = static_cast<int>(n_.buses.size());
@@ -94,7 +94,7 @@ class Newton {
     }
     bus_unknowns_ = unknowns_;
     unknowns_ += 2 * static_cast<int>(ties_.size());
-    // Equations that depend on the reactive power of each bus, each with the factor of that power.
+    // For each bus: the equations that contain its reactive power, with the factor of that power.
     for (int i = 0; i < count; ++i) {
       const Role& role = roles[as_index(i)];
       if (role.kind == Role::load) reactive_[as_index(i)].push_back({magnitude_[as_index(i)], 1.0});

@@ -6,7 +6,7 @@
 
 namespace swingbank::sim::network {
 
-/// Result of a switched shunt that was stepped or whose voltage is outside its band.
+/// Result of a switched shunt that was stepped or whose regulated voltage is outside its band.
 struct SteppedShunt {
   std::size_t which;    ///< index into Network::switched
   double susceptance;   ///< [pu]
@@ -30,16 +30,17 @@ struct PowerFlowOptions {
   bool step_shunts = false;     ///< step switched shunts until the regulated voltages lie in their bands
 };
 /// Solves the power flow.
-/// - A generator regulates the voltage of its bus, or of `regulated`.
-/// - Generators that regulate one remote bus share their reactive power by `share`.
+/// - A generator regulates the voltage of its own bus, or of the bus Generator::regulated.
+/// - Generators that regulate one remote bus share their reactive power by Generator::share.
 /// - A bus whose reactive power would be outside q_min to q_max delivers the limit. It regulates again once
 ///   the voltage has crossed the set-point, at most three times. Slack buses and buses with q_min above q_max
 ///   have no limits.
 /// - In every island at least one slack bus sets the angle and balances the power.
-/// - Between solutions, every switched shunt outside its band moves by one step. A shunt that would reverse
+/// - Between solutions, every switched shunt whose regulated voltage is outside its band moves by one step. A
+/// shunt that would reverse
 ///   its direction stops.
 /// - A bus of type 2 without a generator in service is a load bus.
-/// - At a bus of type 1 generators deliver P and Q.
+/// - At a bus of type 1, generators deliver their P and Q of the file.
 /// - If Newton's method fails from the file's voltages, it is repeated from a flat start, then from both with
 ///   short steps.
 /// - Mismatches below the rounding of the powers at a bus count as zero.

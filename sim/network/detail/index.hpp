@@ -1,5 +1,5 @@
 #pragma once
-// Conversion of a bus, branch or generator number to a vector index.
+// Conversion of a bus, branch or generator index from int to std::size_t.
 #include <cstddef>
 
 namespace swingbank::sim::network {

@@ -10,10 +10,10 @@ namespace swingbank::sim::network {
 class ShuntSteps {
  public:
   explicit ShuntSteps(const Network& network);
-  /// Moves every shunt whose voltage is outside its band by one step towards the band. `change` adds a
-  /// susceptance [pu] at a bus. Returns false if none moved.
+  /// Moves every shunt whose regulated voltage is outside its band by one step towards the band. `change`
+  /// adds a susceptance [pu] at a bus. Returns false if none moved.
   bool step(const std::function<double(int)>& voltage, const std::function<void(int, double)>& change);
-  /// Returns the shunts that were moved or whose voltage is outside its band.
+  /// Returns the shunts that were moved or whose regulated voltage is outside its band.
   [[nodiscard]] std::vector<SteppedShunt> result(const std::function<double(int)>& voltage) const;
 
  private:
