@@ -150,7 +150,7 @@ class PlantEquations {
     machine_.derivative(c, x, m, s, dx);
     limit_derivatives(c, x, dx);
   }
-  /// As derivative(), with torque and field voltage added to the controls' outputs.
+  /// As derivative(), with `torque` and `field` [pu] added to the Tm and Efd of the controls.
   void derivative_with(const T* c, const T* x, T* m, const T& torque, const T& field, Signals<T>& s,
                        T* dx) const {
     signals(c, x, m, s, dx);

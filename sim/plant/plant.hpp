@@ -14,7 +14,7 @@ struct Block {
   const Effect* effect = nullptr;  ///< effect; null: none
   std::vector<double> p;           ///< parameter values, in the units of the effect's records
 };
-/// Remote measuring point of a plant control in the network, selected by Effect::elsewhere.
+/// Remote measuring point of a plant control in the network, given by the parameters in Effect::elsewhere.
 struct FarPlace {
   int bus = -1;         ///< index of the regulated bus; -1: the plant's grid side
   int branch = -1;      ///< index of the measured branch; -1: the plant's own power and current
