@@ -11,7 +11,7 @@ namespace swingbank::sim::reference {
 /// Options of a reference simulation.
 struct ReferenceOptions {
   double t_end = 15.0, rate = 120.0;  ///< end of the simulation [s]; samples per second [1/s]
-  double rtol = 1e-8, atol = 1e-10;   ///< relative and absolute error of each unknown in a step
+  double rtol = 1e-8, atol = 1e-10;   ///< relative and absolute tolerance of each unknown's error in a step
   std::vector<int> plants;            ///< recorded plants; empty: all
   std::vector<Channel> channels;      ///< recorded channels; empty: all of kChannels
   std::vector<int> buses;             ///< buses with recorded voltage, by index in the network

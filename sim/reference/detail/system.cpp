@@ -392,9 +392,9 @@ void ReferenceSystem::residual(double t, const double* y, const double* yp, doub
   }
 }
 
-/// Adds the current of a tie, a branch of very small impedance, to the sums of its buses. The current is the
-/// difference of two nearly equal voltages divided by this impedance. Its rounding error enters both sums
-/// with opposite signs and therefore does not affect the voltages.
+/// Adds the current of a tie, a branch of very small impedance, to the current balances of its buses. The
+/// current is the difference of two nearly equal voltages divided by this impedance. Its rounding error
+/// enters both balances with opposite signs and therefore does not affect the voltages.
 void ReferenceSystem::tie_current(const network::Tie& tie, const double* y, double* f) const {
   const double *from = y + bus_row(tie.from), *to = y + bus_row(tie.to);
   const Complex into = (Complex(from[0], from[1]) / tie.ratio - Complex(to[0], to[1])) / tie.z;
