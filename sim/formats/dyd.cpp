@@ -101,7 +101,7 @@ class DydReader {
       // PSS/E's model of the same name may have other columns or another order of columns.
       out.faults.add(
           fmt::format("no counterpart of PSLF's model {}", name), where(line.number),
-          "its columns are not publicly documented; these models can be read: " + dyd_models_text(),
+          "Swingbank has no table of its columns; these models can be read: " + dyd_models_text(),
           "leave it out with --ignore-model (of one unit: --drop), or map it with --map-model (--replace) "
           "to a model with as many parameters");
       out_.dyr.records.push_back(std::move(out));

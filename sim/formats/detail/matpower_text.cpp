@@ -188,7 +188,8 @@ void not_understood(const Statement& s, const std::string& file, Problems& probl
   std::string shown = s.text.substr(0, s.text.find('\n'));
   if (shown.size() > 40) shown = shown.substr(0, 40) + "...";
   problems.add("unsupported statement '" + shown + "'", file + ":" + std::to_string(s.line),
-               "only assignments of numbers, texts and matrices are read; expressions are not evaluated",
+               "only assignments of numbers, strings, matrices and cell arrays are read; expressions are not "
+               "evaluated",
                "save the case with savecase, which writes plain numbers");
 }
 
