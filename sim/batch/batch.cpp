@@ -62,14 +62,14 @@ void refuse_in_float(const grid::Grid& grid) {
   problems.raise();
 }
 
-/// Refuses loads that regulate another bus, because the network is reduced to the sources' buses.
+/// Refuses loads that regulate another bus, because the kernel passes a load the voltage of its own bus only.
 void refuse_far_regulation(const grid::Grid& grid) {
   Problems problems;
   for (const plant::Consumer& load : grid.loads)
     if (load.regulated >= 0 && load.regulated != load.bus)
       problems.add(fmt::format("{} at {} regulates bus {}", load.block.effect->name, load.name,
                                grid.network.buses[static_cast<std::size_t>(load.regulated)].number),
-                   grid.network.origin, "the batch computes voltages only at machines and modelled loads",
+                   grid.network.origin, "the batch passes a load model the voltage of its own bus only",
                    "use the reference integrator, or let the load regulate its own bus");
   problems.raise();
 }

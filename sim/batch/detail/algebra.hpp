@@ -219,7 +219,7 @@ struct LaneSearch {
 /// enough: a factorisation costs O(K^3), a step O(K^2). The factors of a lane depend only on its own history.
 template <class T>
 unsigned BatchKernel<T>::search_voltages(Constants& k, const T* x, unsigned open) {
-  constexpr int limit = 40, patience = 8;  // largest number of steps; steps before the factors are renewed
+  constexpr int limit = 40, patience = 8;  // maximum steps; from step `patience` on, factors are renewed
   constexpr double longest = 0.3;  // largest step [pu]; a constant-power load may cause too large first steps
   constexpr unsigned all = (1U << kLanes) - 1U;
   const std::size_t count = nonlinear_.size();
