@@ -22,7 +22,7 @@ ParameterPrior uniform_prior(int index, double low, double high);
 /// Maximum a posteriori estimate of the parameters.
 struct MostProbable {
   std::vector<double> p;  ///< all parameters of the effect
-  double chi_square = 0;  ///< chi2 per degree of freedom, with steady state and prior; about 1 if correct
+  double chi_square = 0;  ///< chi2 per degree of freedom, steady state and prior included; 1 expected
   double cost = 0;        ///< -2 times the logarithm of the posterior, up to a constant
   int iterations = 0;     ///< number of steps
 };

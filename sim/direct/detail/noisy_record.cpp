@@ -43,7 +43,7 @@ NoisyRecord noisy_record(const Recording& record, double longest) {
   n.noise = record.noise;
   n.step = record.step;
   n.outputs = record.Ifd.empty() ? kOutputs - 1 : kOutputs;
-  // Without a recorded time, the event is assumed midway between the samples about the first voltage step.
+  // Without a recorded time, the event is assumed in the middle of the interval with the first voltage step.
   const double event_position =
       record.event > 0 ? record.event / record.step : static_cast<double>(before_first_leap(record)) - 0.5;
   const std::size_t size = record.V.size();
