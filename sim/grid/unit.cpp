@@ -228,7 +228,8 @@ class UnitReader {
       return problems_.add(
           fmt::format("unknown model '{}' of unit '{}' at bus {}", name_of(record), unit_.id, unit_.bus),
           where,
-          choice_.dyd ? "available are " + formats::dyd_models_text() : lacking_text(choice_.dyr.string()),
+          choice_.dyd ? "the models that can be read are " + formats::dyd_models_text()
+                      : lacking_text(choice_.dyr.string()),
           fmt::format("leave it out with --drop {0}, or replace it with --replace {0}=OTHER "
                       "(under [grid] of a plant file: ignore_models, map_models)",
                       given));

@@ -324,7 +324,7 @@ void settle_islands(Network& n) {
       continue;
     }
     for (const int b : buses) n.buses[static_cast<std::size_t>(b)].type = BusType::isolated;
-    n.remark("islands without a generator are out of service", bus_list(n, buses));
+    n.remark("islands without a generator at a bus of type 2 or 3 are out of service", bus_list(n, buses));
   }
   settle_isolated(n);
   for (Generator& g : n.generators)

@@ -18,10 +18,10 @@ Topology around(const Event& event, const Network& network, Problems& problems) 
       topology = segment.topology;
     else if (segment.start < fault.t_off && segment.topology != topology)
       problems.add(
-          fmt::format("switching at {:g} s", segment.start), "--fault-type",
-          fmt::format("an unbalanced fault lasts from {:g} to {:g} s and its impedance belongs to one "
-                      "state of the grid",
-                      fault.t_on, fault.t_off),
+          fmt::format("switching at {:g} s during the unbalanced fault", segment.start), "--fault-type",
+          fmt::format(
+              "the fault lasts from {:g} to {:g} s and its impedance belongs to one state of the grid",
+              fault.t_on, fault.t_off),
           "switch before the fault, or at or after its end");
   }
   topology.faults.clear();
