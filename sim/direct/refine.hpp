@@ -33,7 +33,7 @@ Refined refine(const Effect& machine, const Recording& record, std::vector<doubl
 
 /// Refines the candidates in turn. Returns the first candidate whose residual is as small as the record's
 /// noise before the event allows. If there is none, refines further random starts around the best candidate
-/// and returns the best result.
+/// and returns the best result. For a machine without flux states, returns the first candidate unchanged.
 Refined refine_best(const Effect& machine, const Recording& record,
                     std::span<const std::vector<double>> candidates, std::span<const int> free,
                     std::span<const double> low, std::span<const double> high,
