@@ -74,6 +74,8 @@ class Readings {
     constexpr double kFollows = 0.1;
     as_is_ = as_is ? residual_share(*as_is, r_, 0) : std::nullopt;
     if (as_is_ && *as_is_ < kFollows) return std::nullopt;
+    if (as_is)
+      if (auto finding = other_magnitude(*as_is)) return finding;
     if (as_is) delays(*as_is);
     const bool mirrored = r_.angle == record::AngleSource::measured;
     for (const Hypothesis& h : hypotheses()) {
@@ -114,6 +116,30 @@ class Readings {
     }
     if (!(moved > 0) || !std::isfinite(left)) return {};
     return left / moved;
+  }
+
+  /// Returns a warning if P or Q changes by far less or more than in the model, as with kW, MW or GW mistaken
+  /// for each other. The limit is the geometric mean of a factor of 1 and one of 1000.
+  [[nodiscard]] std::optional<Finding> other_magnitude(const playin::Playback& back) const {
+    const double limit = std::sqrt(1000.0);
+    const auto rms = [](const std::vector<double>& x, double start) {
+      double sum = 0;
+      for (const double v : x) sum += std::pow(v - start, 2);
+      return std::sqrt(sum / static_cast<double>(x.size()));
+    };
+    const auto find = [&](const char* name, const char* unit, const std::vector<double>& measured,
+                          const std::vector<double>& modelled, double start) -> std::optional<Finding> {
+      const double is = rms(measured, start), model = rms(modelled, start), ratio = is / model;
+      if (!(ratio > 0) || (ratio > 1 / limit && ratio < limit)) return std::nullopt;
+      return Finding{"power_unit",
+                     Severity::warn,
+                     {fmt::format("a change of {} by {:.2g} {} (RMS), in the model by {:.2g} {}", name,
+                                  is * r_.base.mva, unit, model * r_.base.mva, unit),
+                      r_.name, fmt::format("{} may be in another unit than its column states", name),
+                      fmt::format("check the unit of {}; if it is right, the model is wrong", name)}};
+    };
+    if (auto p = find("P", "MW", r_.P, back.P, back.start.P)) return p;
+    return find("Q", "Mvar", r_.Q, back.Q, back.start.Q);
   }
 
   /// Tests delays of P and Q against the same simulated response.

@@ -113,6 +113,7 @@ std::vector<Mistake> mistakes() {
       {"frequency_deviation_as_pu", "frequency_unit", {.edit = [](Row x) { x[5] -= 1; }}},
       {"hertz_as_pu", "frequency_unit", {.edit = [](Row x) { x[5] *= 60; }}},
       {"into_the_machine", "power_sign", {.edit = [](Row x) { x[3] = -x[3], x[4] = -x[4]; }}},
+      {"reactive_power_in_Gvar", "power_unit", {.edit = [](Row x) { x[4] /= 1e3; }}},
       {"drifting", "unsteady", {.edit = [](Row x) { x[3] += x[0] < 2 ? 0.1 * x[0] : 0.2; }}},
       {"oscillating", "unsteady", {.edit = [](Row x) { x[3] += 0.1 * std::sin(6 * x[0]); }}},
   };
@@ -130,6 +131,14 @@ TEST_P(RecordMistakeTest, IsRecognised) {
 }
 INSTANTIATE_TEST_SUITE_P(All, RecordMistakeTest, ::testing::ValuesIn(mistakes()),
                          [](const auto& each) { return std::string(each.param.name); });
+
+TEST(RecordCheckTest, ActivePowerInGigawattsIsRefusedWhereItSteps) {
+  const Written gigawatts{.edit = [](std::vector<double>& x) { x[3] /= 1e3; }};
+  for (int i : {3, 4}) {  // P hardly steps in events 1 and 2
+    const auto findings = check_record(rewritten(example(i), gigawatts), {100, 60});
+    EXPECT_TRUE(refused(findings, "power_unit")) << i << findings_text(findings);
+  }
+}
 
 TEST(RecordCheckTest, InterpolatesLostSamplesWrittenAsZeros) {
   for (int i = 1; i <= 4; ++i) {

@@ -126,6 +126,20 @@ TEST(ReadingsOfAWrongModel, AreNotReported) {
     EXPECT_FALSE(found) << found->problem.sentence();
   }
 }
+TEST(ReadingsOfAWrongModel, PowerAThousandTimesTooSmallIsReported) {
+  const plant::PlantModel model = plant::load_plant_model(test::source("configs/plants/ieee14_bus2.toml"));
+  for (int i = 1; i <= 4; ++i) {
+    const auto file = test::source(fmt::format("configs/records/record-example/avr_ev{}.csv", i));
+    for (auto power : {&record::Record::P, &record::Record::Q}) {
+      record::Record r = record::read_record(file, model.record_base);
+      for (double& x : r.*power) x /= 1000;
+      const auto found = better_reading(r, model);
+      ASSERT_TRUE(found) << i;
+      EXPECT_EQ(found->kind, "power_unit") << i << found->problem.sentence();
+      EXPECT_THAT(found->problem.sentence(), HasSubstr("may be in another unit")) << i;
+    }
+  }
+}
 
 struct DispatchTest : ReadingsTest {
   const double mw = sound.base.mva;

@@ -23,6 +23,7 @@ struct Mistake {
   double turn = 0;      ///< smallest required step of the angle as written [rad]
 };
 inline const std::vector<Mistake>& mistakes() {
+  constexpr double kThousand = 1e3;
   static const std::vector<Mistake> list = {
       {"swapped_channels", "with P and Q exchanged the steps are consistent",
        "exchange the columns of P and Q",
@@ -50,6 +51,16 @@ inline const std::vector<Mistake>& mistakes() {
        "reverse the sign of Q with --columns (Q=-NAME)",
        [](const Reading& x) {
          return Reading{x.V, x.theta, x.P, -x.Q};
+       }},
+      {"power_unit", "with P a thousand times as large the steps are consistent",
+       "check the unit in the column's name: kW, MW or GW",
+       [](const Reading& x) {
+         return Reading{x.V, x.theta, kThousand * x.P, x.Q};
+       }},
+      {"power_unit", "with Q a thousand times as large the steps are consistent",
+       "check the unit in the column's name: kvar, Mvar or Gvar",
+       [](const Reading& x) {
+         return Reading{x.V, x.theta, x.P, kThousand * x.Q};
        }},
   };
   return list;
