@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "base/durable.hpp"
+#include "base/problem.hpp"
 
 namespace swingbank {
 
@@ -13,10 +15,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::string_view kListPrefix = ".swingbank-";
 constexpr const char* kLockFile = ".swingbank-lock";
 
 fs::path list_file(const fs::path& folder, const std::string& command) {
-  return folder / (".swingbank-" + command);
+  return folder / (std::string(kListPrefix) + command);
 }
 
 /// Reads lines of "hash name". Ignores names that contain a folder, because this program never writes them.
@@ -28,6 +31,26 @@ std::map<std::string, std::string> read_list(const fs::path& file) {
   for (std::string hash, name; lines >> hash && std::getline(lines >> std::ws, name);)
     if (fs::path(name).filename() == name && !fs::path(name).empty()) all[name] = hash;
   return all;
+}
+
+/// Throws InputError if the folder has results of another command under one of `names`.
+void require_no_results_of_others(const fs::path& folder, const std::string& command,
+                                  const std::vector<std::string>& names) {
+  std::error_code none;
+  std::map<std::string, std::string> owners;  // command of each file, by name
+  for (const auto& entry : fs::directory_iterator(folder, none)) {
+    const std::string list = entry.path().filename().string();
+    if (!list.starts_with(kListPrefix) || list == kLockFile || entry.path() == list_file(folder, command))
+      continue;
+    for (const auto& [name, hash] : read_list(entry.path()))
+      if (std::ranges::find(names, name) != names.end() && fs::exists(folder / name, none))
+        owners[name] = list.substr(kListPrefix.size());
+  }
+  Problems problems;
+  for (const auto& [name, owner] : owners)
+    problems.add(name + " of 'swingbank " + owner + "'", "--out " + folder.string(),
+                 "'" + command + "' would replace it", "give another folder");
+  problems.raise();
 }
 
 }  // namespace
@@ -42,6 +65,7 @@ OutputFolder::OutputFolder(fs::path folder, std::string command, const std::vect
     if (std::ranges::find(names, name) == names.end()) outputs.push_back({folder_ / name, "--out"});
   outputs.insert(outputs.end(), others.begin(), others.end());
   require_inputs_kept(outputs);
+  require_no_results_of_others(folder_, command_, names);
   std::error_code none;
   created_ = !fs::exists(folder_, none);
   make_folder(folder_);

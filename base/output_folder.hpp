@@ -17,7 +17,8 @@ class OutputFolder {
  public:
   /// Locks the folder; call it after all inputs are read and before the work. `names`: files that the command
   /// may write into the folder; `others`: outputs elsewhere. Throws InputError if an output or a file of an
-  /// earlier run is an input, or if another command uses the folder.
+  /// earlier run is an input, if one of `names` is a result of another command, or if a running command uses
+  /// the folder.
   OutputFolder(std::filesystem::path folder, std::string command, const std::vector<std::string>& names,
                const std::vector<Output>& others = {});
   /// Removes the lock file, and the folder if the constructor created it and it is empty.

@@ -16,6 +16,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 namespace fs = std::filesystem;
 
 class InputsKept : public ::testing::Test {
@@ -122,6 +123,24 @@ TEST_F(OutputFolderTest, RefusesAnInputThatIsAStaleResult) {
   read("out/playback-a.csv");
   EXPECT_THROW(OutputFolder("out", "compare", {"compare.json"}), InputError);
   EXPECT_EQ(read_text("out/playback-a.csv"), "a");
+}
+
+TEST_F(OutputFolderTest, RefusesToReplaceResultsOfAnotherCommand) {
+  {
+    OutputFolder results("out", "add", {"model.toml", "report.html", "add.json"});
+    for (const char* name : {"model.toml", "report.html"}) write_text(results.file(name), "add");
+    results.finish();
+  }
+  try {
+    const OutputFolder results("out", "calibrate", {"model.toml", "report.html", "add.json"});
+    ADD_FAILURE() << "results of another command are replaced";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("model.toml of 'swingbank add' at --out out"),
+                      HasSubstr("report.html of 'swingbank add'"), Not(HasSubstr("add.json of"))));
+  }
+  EXPECT_NO_THROW(OutputFolder("out", "compare", {"compare.json"}));
+  EXPECT_NO_THROW(OutputFolder("out", "add", {"report.html"}));
 }
 
 TEST_F(OutputFolderTest, IsLockedByOneCommandAndLeavesNoLockFile) {
