@@ -1,4 +1,5 @@
 // Reader of .dyr files; models can be ignored or read as other models.
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -157,9 +158,9 @@ class DyrReader {
     psse::Fields numbers(record, name_, dyr.faults), texts(record, name_, no_number);
     for (std::size_t i = named_fourth ? 4 : 3; i < fields.size(); ++i) {
       const bool quoted = record.fields[i].quoted;
-      const std::string what = dyr.model + " parameter " + std::to_string(i - 2);
-      if (record.fields[i].text.empty() && !quoted)
-        dyr.empty.push_back(static_cast<int>(dyr.values.size()) + 1);
+      const int number = static_cast<int>(dyr.values.size()) + 1;
+      const std::string what = fmt::format("{} parameter {}", dyr.model, number);
+      if (record.fields[i].text.empty() && !quoted) dyr.empty.push_back(number);
       dyr.values.push_back(static_cast<double>((quoted ? texts : numbers).number(i, what.c_str(), 0.0L)));
       if (no_number.empty()) continue;
       dyr.texts.push_back({dyr.values.size() - 1, no_number});

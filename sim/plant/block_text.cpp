@@ -21,7 +21,7 @@ void set_parameters(Block& block, const std::string& text, const std::string& wh
         names += (names.empty() ? "" : ", ") + std::string(p.name);
       problems.add("'" + one + "'", where,
                    std::string(block.effect->name) + " has " + (names.empty() ? "no parameters" : names),
-                   "write PARAM=VALUE with one of these");
+                   names.empty() ? "remove it" : "write PARAM=VALUE with one of these");
       continue;
     }
     double value = 0.0;

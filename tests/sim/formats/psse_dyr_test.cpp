@@ -147,6 +147,13 @@ TEST(PsseDyr, TextsAmongTheParametersAreKept) {
               ::testing::HasSubstr("MODEL parameter 2 = 'A1' at t.dyr:1"));
 }
 
+TEST(PsseDyr, ParametersOfUserModelsAreCountedAfterTheName) {
+  const auto r = parse_dyr("7 'USRMDL' '1' 'MYGOV' 1 x ,, 2 /\n", "t.dyr");
+  ASSERT_EQ(r.size(), 1U);
+  EXPECT_THAT(r[0].faults.list().at(0).what, HasSubstr("USRMDL parameter 2"));
+  EXPECT_THAT(r[0].empty, ElementsAre(3));
+}
+
 TEST(PsseDyr, CtrlZAndQAndZeroEndTheFile) {
   const std::string records = "6 'GENCLS' 1 3.0 0 /\n7 'GENCLS' 1 4.0 0.5 /\n";
   for (const char* last : {"\x1A", "\x1A\n\x1A", "Q", " q \n", "0 /", "0 / END OF DATA\n", "0 /\nQ\n\x1A"}) {
