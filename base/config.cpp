@@ -101,7 +101,7 @@ std::string written(const toml::node& n) {
 /// Adds a problem for every key that was never read.
 void unknown(const toml::table& table, const std::string& prefix, const std::set<std::string>& asked,
              const fs::path& name, Problems& problems) {
-  std::vector<std::string> known, missing;  // keys that the table lacks; only these are suggested
+  std::vector<std::string> known, missing;  // missing: keys that the table lacks, for "did you mean"
   for (const auto& key : asked)
     if (key.starts_with(prefix) && key.find('.', prefix.size()) == std::string::npos) {
       known.push_back(key.substr(prefix.size()));

@@ -208,8 +208,8 @@ class Explorer {
     return all;
   }
 
-  /// Returns whether a key may depend on a decision: it is not below the decision's own key, and not in
-  /// another branch of an alternative.
+  /// Returns whether a key may depend on a decision: it is not the decision's key or below it, and each
+  /// branch (Branch) that contains it also contains the decision.
   static bool depends(const KeyPath& path, const KeyPath& decision) {
     if (begins_with(path, decision) || !is_single({path.back()}) || path.back().starts_with('='))
       return false;

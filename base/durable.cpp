@@ -124,7 +124,7 @@ void flush_temporary(const fs::path& file) {
 
 namespace {
 
-/// Publishes a file. Meanwhile, calls `meanwhile` with the temporary name; another thread flushes the file.
+/// Publishes a file. While another thread flushes it, calls `meanwhile` with the temporary name.
 void publish_and(const fs::path& file, const std::function<void(const fs::path&)>& meanwhile) {
   const fs::path temporary = temporary_name(file);
   try {

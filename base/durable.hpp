@@ -29,7 +29,7 @@ void flush_folder(const std::filesystem::path& folder);
 /// File that is written piece by piece. The destructor removes it unless it was published.
 class NewFile {
  public:
-  /// Creates the temporary file. All members throw InputError on failure. If the file cannot be written, its
+  /// Creates the temporary file. All members throw InputError on failure. If the file cannot be written, the
   /// message begins with `failure`.
   explicit NewFile(std::filesystem::path file, std::string failure = "cannot write the file");
   ~NewFile();

@@ -32,8 +32,9 @@ class OutputFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
   /// Treatment of results of an earlier run that this run has not overwritten.
   enum class Earlier { removed, stay };
-  /// Writes the list of results; call it after the last result is written. Removes unchanged results of an
-  /// earlier run of this command. Keeps a file that was changed since then, because the user has edited it.
+  /// Writes the list of results; call it after the last result is written. With Earlier::removed, removes the
+  /// results of earlier runs of this command that this run has not overwritten. Keeps a file that was changed
+  /// since it was written, because the user has edited it.
   void finish(Earlier earlier = Earlier::removed);
 
  private:

@@ -36,7 +36,8 @@ inline std::filesystem::path own_folder() {
 inline std::filesystem::path own_command(const std::string& command, const std::string& remedy) {
   const auto program = own_folder() / ("swingbank-" + command);
   if (::access(program.c_str(), X_OK) != 0)
-    throw InputError({"swingbank " + command, program.string(), "this build does not have it", remedy});
+    throw InputError(
+        {"missing command swingbank " + command, program.string(), "this build does not have it", remedy});
   return program;
 }
 

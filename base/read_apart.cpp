@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kPatience = 300.0;          ///< wall-clock limit [s]: slow disk or stopped process
 constexpr rlim_t kProcessorTime = 30;        ///< processor time limit [s]: endless loop on a damaged file
-constexpr std::uintmax_t kSlow = 5'000'000;  ///< rate by which both limits grow with the file size [bytes/s]
+constexpr std::uintmax_t kSlow = 5'000'000;  ///< both limits grow by file size / this rate [bytes/s]
 constexpr int kProblemsReported = 3;         ///< exit code: the output is a list of problems
 constexpr const char* kWhat = "cannot read the file";
 constexpr const char* kRemedy = "copy the file again from its source, or generate it again";
@@ -64,7 +64,8 @@ std::string read_apart(const std::string& kind, const std::filesystem::path& fil
     if (WEXITSTATUS(ended.status) == kProblemsReported)
       if (auto problems = problems_in(ended.output); !problems.empty()) throw InputError(std::move(problems));
   }
-  throw InputError({kWhat, file.string(), way_to_end(ended, patience) + "; the file is damaged", kRemedy});
+  throw InputError(
+      {kWhat, file.string(), way_to_end(ended, patience) + "; the file may be damaged", kRemedy});
 }
 
 int reply_apart(const std::filesystem::path& file, const std::function<std::string()>& work) {
@@ -83,7 +84,7 @@ int reply_apart(const std::filesystem::path& file, const std::function<std::stri
   } catch (const InputError& e) {
     for (const Problem& p : e.problems()) problems.push_back({p.what, p.where, p.why, p.remedy});
   } catch (const std::bad_alloc&) {
-    problems.push_back({kWhat, "its reader", "too little memory", "use a machine with more memory"});
+    problems.push_back({kWhat, file.string(), "too little memory", "use a machine with more memory"});
   }
   return write_all(STDOUT_FILENO, json_text(problems)) ? kProblemsReported : 1;
 }

@@ -5,8 +5,8 @@
 
 namespace swingbank {
 
-/// Returns the word as a POSIX shell reads it back: in single quotes, unless every character is a letter, a
-/// digit or one of _./:=+,@%-.
+/// Returns the text that a POSIX shell reads as this word: the word in single quotes, unless every character
+/// is a letter, a digit or one of _./:=+,@%-.
 inline std::string shell_word(std::string_view word) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=+,@%-";

@@ -1,6 +1,6 @@
 #pragma once
 // Graceful stop on SIGTERM, SIGINT and SIGUSR1. The program finishes the current shards or ends the current
-// fits, saves its state and exits with code 2.
+// fits, saves what it has reached, if anything, and exits with code 2.
 #include <unistd.h>
 
 #include <csignal>
@@ -10,7 +10,7 @@
 
 namespace swingbank {
 
-constexpr int kSubmitAgain = 2;  ///< exit code: state saved, run the command again to continue
+constexpr int kSubmitAgain = 2;  ///< exit code after a stop signal: run the command again
 
 namespace detail {
 inline volatile std::sig_atomic_t stop_asked = 0, interruptible = 0, first_rank = 1;

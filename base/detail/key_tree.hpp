@@ -53,8 +53,8 @@ class KeyTree {
   KeyTrace::Table branch_;
   bool asked_for_ = false;              ///< whether a reader asks first whether the key is present
   int pass_ = 0;                        ///< number of passes so far; used in the root
-  int touched_ = 0, last_touched_ = 0;  ///< number of passes that read this table; number of the last one
-  int needed_ = 0, last_needed_ = 0;    ///< number of passes that require this node; number of the last one
+  int touched_ = 0, last_touched_ = 0;  ///< count of passes that read this table; index of the last one
+  int needed_ = 0, last_needed_ = 0;    ///< count of passes that require this node; index of the last one
 };
 
 }  // namespace swingbank
