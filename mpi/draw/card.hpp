@@ -1,6 +1,6 @@
 #pragma once
-// Dataset card (card.json): everything needed to generate a dataset again without its original input files:
-// the config, the files that it names, the command-line overrides, and the software that generated it.
+// Dataset card (card.json): copies of the config and of the files that it names, the command-line overrides,
+// and the names of software and machine. With it, a dataset can be generated again without its input files.
 #include <map>
 
 #include "mpi/draw/dataset_config.hpp"
@@ -24,7 +24,7 @@ struct Card {
   std::map<std::string, std::string> made_by;
 };
 
-/// Replaces every occurrence of a file name in quotes. Returns false if there is none.
+/// Replaces every occurrence of the file name `from` in quotes by `to`. Returns false if there is none.
 bool replace_name(std::string& text, const std::string& from, const std::string& to);
 /// Returns the card of a config. Throws InputError if a named file cannot be read. A file name with escape
 /// sequences is also an error, because `replace_name` does not find it.

@@ -62,8 +62,8 @@ void draw_one(const DatasetConfig& config, std::uint64_t number, BoxedPlant& pla
 
 /// Forecast of the number of candidates for the requested samples, to abort an infeasible request early. The
 /// model: with n accepted samples, the fraction \f$ e^{-n/n_0} \f$ of the admissible candidates is far enough
-/// from all accepted samples. For the thesis's box and a distance of 0.7, it predicts the number of
-/// candidates for 15,000 to 240,000 samples within 8 %.
+/// from all accepted samples. For the GENROU box of the thesis (README.md) and a distance of 0.7, it predicts
+/// the number of candidates for 15,000 to 240,000 samples within 8 %.
 class Forecast {
  public:
   Forecast(std::uint64_t points, double patience)
@@ -127,7 +127,7 @@ class Drawer {
                         "lower `draws`, or raise fault.per_point"});
     }
   }
-  /// Draws and tests the candidates of a batch on all cores.
+  /// Draws and tests the candidates of a batch in parallel.
   void judge_batch() {
     in_parallel(
         kBatch / kPiece,
@@ -170,7 +170,8 @@ class Drawer {
     const auto reached = static_cast<double>(bank_.points()), admissible = static_cast<double>(admissible_);
     const auto needed = forecast_.draws(reached, admissible);
     const bool hopeless = needed && forecast_.hopeless(*needed);
-    // The search also ends if the policy admits almost no candidate.
+    // The sampling also ends after the allowed number of admissible candidates, or if the policy admits fewer
+    // than one candidate in 1000.
     if (!hopeless && admissible <= patience_ && static_cast<double>(bank_.candidates) <= 1000.0 * patience_)
       return;
     std::string why = fmt::format("{} candidates: {}", bank_.candidates, reasons(bank_));

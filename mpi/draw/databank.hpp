@@ -2,8 +2,8 @@
 // Databank: parameter sets drawn uniformly from a box of parameter intervals, with a minimum distance, by
 // Poisson-disk dart throwing. The distance is Euclidean, in raw parameter units or box widths
 // (`databank.scale`). Candidate k is a pure function of (seed, k). Candidates are accepted in order, so the
-// first n samples depend neither on the total number nor on the computer. A "databank sample" is one
-// parameter set.
+// first n samples depend neither on the number of requested samples nor on the computer. A "databank sample"
+// is one parameter set.
 #include <map>
 #include <string>
 #include <vector>
@@ -14,11 +14,12 @@ namespace swingbank::mpi::draw {
 
 /// Accepted databank samples and counts of the rejected candidates.
 struct Databank {
-  std::size_t dimensions = 0;                    ///< parameters per sample, including fixed ones
-  std::vector<double> values;                    ///< samples x dimensions
-  std::uint64_t candidates = 0;                  ///< number of candidates generated
-  std::uint64_t too_close = 0;                   ///< candidates closer than the minimum distance
-  std::map<std::string, std::uint64_t> refused;  ///< inadmissible candidates by reason: "not Xd > X'd"
+  std::size_t dimensions = 0;    ///< parameters per sample, including fixed ones
+  std::vector<double> values;    ///< samples x dimensions
+  std::uint64_t candidates = 0;  ///< number of candidates generated
+  std::uint64_t too_close = 0;   ///< number of candidates closer to a sample than the minimum distance
+  std::map<std::string, std::uint64_t>
+      refused;  ///< number of inadmissible candidates by reason, "not Xd > X'd"
 
   [[nodiscard]] std::size_t points() const { return dimensions == 0 ? 0 : values.size() / dimensions; }
   [[nodiscard]] const double* point(std::size_t i) const { return values.data() + i * dimensions; }

@@ -64,8 +64,8 @@ void write_databank(const std::filesystem::path& file, const Databank& bank, con
   f.create<double>("/parameters", {bank.points(), bank.dimensions});
   f.create<std::uint64_t>("/point", {points.size()});
   f.create_labels("/parameter", names);
-  f.describe("/parameters", "see parameter_units", "parameter values of the points");
-  f.describe("/point", "1", "number of the point");
+  f.describe("/parameters", "see parameter_units", "parameter values of the databank samples");
+  f.describe("/point", "1", "number of the databank sample");
   f.describe("/parameter", "1", "name of the parameter");
   f.attach_scales({{"/parameters", {"/point", "/parameter"}}});
   f.write("/parameters", 0, bank.points(), bank.values.data());
@@ -89,7 +89,7 @@ Databank read_databank(const std::filesystem::path& file, const DatasetConfig& c
     refuse("not a databank file",
            std::string("it needs the format ") + kFormat + ", databank_hash and values_hash");
   if (f.text_attribute("databank_hash") != databank_hash(config, base))
-    refuse("a databank of another config", "its boxes, policy, distance, seed or machine differ");
+    refuse("a databank of another config", "its parameter intervals, policy, distance, seed or plant differ");
   const auto shape = f.shape("/parameters");
   if (shape.size() != 2 || shape[1] != config.box.size())
     refuse("wrong shape of /parameters", "it must have one column per parameter of the config");

@@ -24,8 +24,8 @@ Range bus_number(std::string meaning) { return {1, 999997, "", std::move(meaning
 Range count(std::string meaning) { return {1, 1e10, "", std::move(meaning)}; }  // 1e10 rows are 400 TB
 const Range kShardDraws{1, 1e6, "", "events per shard, instead of shard_megabytes"},
     kSeed{0, 9e18, "", "seed of all random numbers"}, kRate{1.0, 1e5, "1/s", "sampling rate"};
-const Range kShardSize{0.001, 1e5, "MB", "size of a file"};
-constexpr double kUsualShard = 64.0;  ///< default size of a shard [MB], about 1 s of core time
+const Range kShardSize{0.001, 1e5, "MB", "size of a shard"};
+constexpr double kUsualShard = 64.0;  ///< default size of a shard [MB], simulated in about 1 s of core time
 
 /// Returns the names of the parameters that can be sampled.
 std::vector<std::string> parameter_names(const sim::Effect& e) {
@@ -170,7 +170,7 @@ void read_case(Config& c, DatasetConfig& d) {
   o.drop_refused = o.raw.drop_refused =
       c.optional<bool>("drop_refused", false, {.meaning = "leave out models that cannot be initialised"});
   o.raw.repeated = sim::grid::choose(c, "repeated", sim::grid::kRepeatedWords, o.raw.repeated,
-                                     {.meaning = "repeated records of the .raw"});
+                                     {.meaning = "treatment of repeated records of the .raw"});
   o.complete_records =
       sim::grid::choose(c, "complete_records", sim::grid::kLackingWords, o.complete_records,
                         {.meaning = "completion of records that are shorter than their model"});
@@ -310,13 +310,13 @@ void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point)
   interval("operating_point.dispatch", p.dispatch_low, p.dispatch_high,
            {0.01, 10.0, "", "[low, high] factor of each generator's P"});
   p.voltage = c.optional<double>("operating_point.voltage", 0.0,
-                                 {0.0, 0.2, "pu", "deviation of each controlled voltage, either way"});
+                                 {0.0, 0.2, "pu", "largest deviation of each voltage setpoint, up or down"});
   interval("operating_point.loading", p.loading_low, p.loading_high,
            {0.001, 2.0, "", "[low, high] apparent power of a machine / its base"});
   p.oversized_share = c.optional<double>("operating_point.oversized_share", 0.0,
                                          {0.0, 1.0, "", "share of oversized machines"});
   interval("operating_point.oversized", p.oversized_low, p.oversized_high,
-           {1.0, 1000.0, "", "[low, high] factor of their base"});
+           {1.0, 1000.0, "", "[low, high] factor of the base of an oversized machine"});
   double low = 0.0, high = 0.0;
   interval("operating_point.lines_out", low, high,
            {0.0, 100.0, "", "[low, high] number of lines out of service"});
@@ -424,7 +424,7 @@ DatasetConfig read_values(Config& c, std::optional<double>& megabytes) {
   d.tolerance = c.optional<double>("kernel.tolerance", 1e-6,
                                    {1e-12, 1e-2, "", "tolerance of the integrator, per step"});
   d.lanes = static_cast<int>(c.optional<std::int64_t>(
-      "kernel.lanes", 0, {0, 16, "", "SIMD width; 0: the widest in double of the build"}));
+      "kernel.lanes", 0, {0, 16, "", "SIMD width; 0: the widest of the build in double precision"}));
   if (d.fault.start + d.fault.longest >= d.record.t_end && d.record.t_end > 0)
     c.problem("fault.start", fmt::format("a fault until {} s", d.fault.start + d.fault.longest),
               fmt::format("the record ends at {} s", d.record.t_end),

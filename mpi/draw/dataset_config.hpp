@@ -103,7 +103,7 @@ struct DatasetConfig {
   std::optional<OperatingPointConfig> operating_point;
   std::uint64_t draws = 0, draws_per_shard = 0, seed = 1;
   double tolerance = 1e-6;  ///< integration tolerance of the kernel
-  int lanes = 0;            ///< SIMD width of the kernel; 0: the widest of this build
+  int lanes = 0;            ///< SIMD width of the kernel; 0: the widest of this build in double
 
   [[nodiscard]] const sim::Effect& effect() const;
   [[nodiscard]] const sim::Effect& effect_of(const Box& box) const;

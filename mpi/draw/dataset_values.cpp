@@ -1,4 +1,5 @@
-// Derived quantities (samples, bytes, points) of a dataset config and its canonical text for hashing.
+// Derived quantities of a dataset config (samples of a record, bytes of a draw, number of databank samples),
+// and its canonical text for hashing.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -68,7 +69,7 @@ std::string DatasetConfig::canonical() const {
   const auto line = [&](std::string_view key, const auto& value) {
     text += fmt::format("{} = {}\n", key, value);
   };
-  // Optional keys with their default value give no line, so that older configs keep their hash.
+  // The keys of this group give no line at their default value, so that older configs keep their hash.
   const sim::grid::CaseOptions& o = grid_case;
   const auto choice = [&](std::string_view key, const std::vector<std::string>& words, auto chosen) {
     if (const auto at = static_cast<std::size_t>(chosen); at > 0) line(key, words[at]);

@@ -25,7 +25,7 @@ constexpr int kLineTries = 1000;  ///< largest number of lines tried for removal
 
 void draw_loads(const OperatingPointConfig& c, double common, Random& random, network::Network& n) {
   for (auto& load : n.loads) {
-    if (load.kind == network::LoadKind::shunt) continue;  // a shunt consumes no power
+    if (load.kind == network::LoadKind::shunt) continue;  // switched shunts keep their admittance
     const double s = common * random.uniform(1.0 - c.load_spread, 1.0 + c.load_spread);
     load.power *= s;
     load.current *= s;

@@ -1,7 +1,7 @@
 #pragma once
-// Fixed-radius neighbour search in a grid of cells. Points are sorted into cells whose width is the distance.
-// Only axes much longer than the distance are gridded. With 60,000 GENROU points and a distance of 0.7, a
-// search needs about a hundred comparisons, eight at a time (SIMD).
+// Fixed-radius neighbour search in a grid of cells. Points are sorted into cells whose width is the search
+// radius (`distance`). Only axes much longer than the radius are divided into cells. With 60,000 GENROU
+// points and a distance of 0.7, a search needs about a hundred comparisons, eight at a time (SIMD).
 #include <cstdint>
 #include <unordered_map>
 #include <vector>

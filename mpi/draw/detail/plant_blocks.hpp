@@ -32,7 +32,7 @@ class BoxedPlant {
  private:
   sim::plant::Plant plant_;
   std::vector<sim::plant::ParameterId> boxed_;              ///< parameters of the box
-  std::vector<int> changed_ = {sim::plant::kMachineBlock};  ///< blocks with such parameters
+  std::vector<int> changed_ = {sim::plant::kMachineBlock};  ///< blocks with parameters of the box
 };
 
 }  // namespace swingbank::mpi::draw
