@@ -18,7 +18,7 @@ struct GenerateOptions {
   bool dedicated_master = false;   ///< rank 0 does not simulate
   bool repair = false;             ///< regenerate damaged shards
   std::string software = {};       ///< version and commit, for the card
-  bool trust = false;              ///< check only the length of existing shards
+  bool trust = false;  ///< check only the lengths of existing shards, or a complete dataset's manifest
   Progress::Mode progress = Progress::Mode::automatic;
 };
 

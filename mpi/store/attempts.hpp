@@ -11,8 +11,8 @@ namespace swingbank::mpi::store {
 
 /// One run on a dataset.
 struct Attempt {
-  std::string started, ended;                     ///< UTC, "2026-11-24T22:14:09Z"; `ended` is empty if killed
-  std::string outcome;                            ///< "made", "stopped" or "failed"; empty if killed
+  std::string started, ended;  ///< UTC, "2026-11-24T22:14:09Z"; `ended` is empty without an end line
+  std::string outcome;         ///< "made", "stopped" or "failed"; empty without an end line
   std::map<std::string, std::string> properties;  ///< by name: host, process, ranks, software, shards found
 };
 

@@ -135,7 +135,7 @@ std::optional<Problem> fault_of_length(const fs::path& file, std::uint64_t bytes
 }
 
 Problem beyond(const fs::path& folder, const JournalLine& line, const DatasetHeader& header) {
-  return {"shard " + std::to_string(line.shard), (folder / line.file).string(),
+  return {"journal entry for shard " + std::to_string(line.shard), (folder / line.file).string(),
           "the dataset has " + std::to_string(header.shard_count()) + " shards",
           "restore dataset.json and the journals of one and the same dataset"};
 }

@@ -26,7 +26,7 @@ struct DatasetHeader {
   std::uint64_t samples = 0;  ///< samples per channel and row
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
   ///< names and units, in the order of the arrays' columns
-  std::vector<double> parameter_low, parameter_high;  ///< the sampling box
+  std::vector<double> parameter_low, parameter_high;  ///< ends of the parameter intervals
   std::vector<std::string> parameter_effects = {};    ///< effect of each parameter; empty: machine for all
   double frequency = 0.0;                             ///< nominal frequency [Hz]; 0 in older datasets
   /// Bus numbers of the varied generators; empty in older datasets.
@@ -73,8 +73,8 @@ ShardInfo info_of(const DatasetHeader& header, const ShardData& data, std::uint6
 
 /// Opens a dataset. Takes the list of shards from the manifest if there is one, without access to the shards.
 /// Otherwise takes it from the journals and checks that the files exist. The functions that read a shard
-/// check its length and bytes. Throws InputError if there is no dataset or, unless `allow_incomplete`, if
-/// shards are missing.
+/// check its length; read_checked also checks its hash. Throws InputError if there is no dataset or, unless
+/// `allow_incomplete`, if shards are missing.
 Dataset open_dataset(const std::filesystem::path& folder, bool allow_incomplete = false);
 /// Shard that differs from its journal line, and the problem.
 struct BadShard {

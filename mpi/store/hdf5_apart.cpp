@@ -84,7 +84,8 @@ std::string read_asked(const std::filesystem::path& path, const std::vector<std:
 
 Contents Contents::parse(std::string_view bytes, const std::filesystem::path& file) {
   const auto astray = [&](const std::string& why) {
-    throw InputError({"cannot read the file", file.string(), "the reply of its reader is invalid: " + why,
+    throw InputError({"cannot read the file", file.string(),
+                      "the reply of the reading process is invalid: " + why,
                       "copy the file again from its source, or generate it again"});
   };
   Contents contents;

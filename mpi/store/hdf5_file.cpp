@@ -280,7 +280,7 @@ void File::transfer(const std::string& object, hsize_t first, hsize_t count, hid
   const Handle space(H5Dget_space(set.get()), H5Sclose);
   Shape extent = shape(object), start(extent.size(), 0);
   if (extent.empty() || first + count > extent[0]) {
-    throw InputError({"rows " + std::to_string(first) + " to " + std::to_string(first + count - 1),
+    throw InputError({"missing rows " + std::to_string(first) + " to " + std::to_string(first + count - 1),
                       name_.string() + ":" + object,
                       "the array has " + std::to_string(extent.empty() ? 0 : extent[0]) + " rows",
                       "request existing rows"});

@@ -52,8 +52,8 @@ std::vector<std::filesystem::path> journals_of(const std::filesystem::path& fold
 /// entries of a shard, and adds these problems to `damaged`. Throws InputError instead if `damaged` is null.
 std::vector<JournalLine> read_journals(const std::filesystem::path& folder, Problems* damaged = nullptr);
 
-/// Removes the manifest, then rewrites the journals atomically without these shards and without damaged
-/// lines.
+/// Removes the manifest, then rewrites the journals atomically without these shards, damaged lines and
+/// contradictory entries.
 void strike_lines(const std::filesystem::path& folder, const std::vector<std::uint64_t>& shards);
 
 /// Open journal. The constructor removes an incomplete last line. The caller must hold the dataset's lock

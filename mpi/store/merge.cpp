@@ -103,14 +103,14 @@ void merge_datasets(const std::vector<fs::path>& from, const fs::path& into,
   make_folder(into);
   const RunLock lock(
       into / ".lock",
-      LockWords{"dataset in use", into.string(), "wait for it to end, or choose another folder"},
+      LockWords{"dataset in use", into.string(), "wait until that run ends, or choose another folder"},
       std::chrono::seconds(5));
   if (fs::exists(into / "dataset.json")) {
     common_header({from.front(), into});
   } else {
     for (const auto& entry : fs::directory_iterator(into))
       if (!entry.path().filename().string().starts_with('.'))
-        throw InputError({"output folder in use", into.string(), "it holds files but no dataset",
+        throw InputError({"output folder is not empty", into.string(), "it holds files but no dataset",
                           "give a new or empty folder"});
     write_header(into, header);
   }

@@ -22,22 +22,23 @@ struct ShardAttributes {
   std::string machine_model;  ///< "GENROU"
   std::vector<std::string> channel_names, channel_units, parameter_names, parameter_units;
   ///< names and units, in the order of the arrays' columns
-  std::vector<double> parameter_low, parameter_high;  ///< the sampling box
+  std::vector<double> parameter_low, parameter_high;  ///< ends of the parameter intervals
   std::vector<std::string> parameter_effects = {};    ///< effect of each parameter; empty: machine for all
   bool operating_points = false;  ///< whether operating points vary, and with them the machine bases
   bool int16 = false;             ///< storage as 16-bit integers (quantise.hpp) instead of float32
 };
 
-/// Rows of a shard, one per stable generator record; every array is row-major.
+/// Rows of a shard, one for each varied generator of a stable draw; every array is row-major.
 struct RowBlock {
   std::size_t rows = 0, channels = 0, samples = 0, parameter_count = 0;
   ///< numbers of rows, channels, samples and parameters
-  std::vector<float> records;             ///< rows x channels x samples [pu on the machine's base, rad]
-  std::vector<double> parameters;         ///< rows x parameters, in order of parameter_names
-  std::vector<std::uint64_t> sample_id;   ///< rows
-  std::vector<std::int32_t> generator;    ///< rows: bus number of the generator
-  std::vector<double> fault;              ///< rows x 5: bus number, t_on [s], t_off [s], r [pu], x [pu]
-  std::vector<double> largest_spread;     ///< rows: largest difference between two rotor angles [rad]
+  std::vector<float> records;            ///< rows x channels x samples [pu on the machine's base, rad]
+  std::vector<double> parameters;        ///< rows x parameters, in order of parameter_names
+  std::vector<std::uint64_t> sample_id;  ///< rows
+  std::vector<std::int32_t> generator;   ///< rows: bus number of the generator
+  std::vector<double> fault;             ///< rows x 5: bus number, t_on [s], t_off [s], r [pu], x [pu]
+  std::vector<double>
+      largest_spread;  ///< rows: largest change of the angle between two rotors since t = 0 [rad]
   std::vector<std::uint8_t> angle_valid;  ///< rows x samples, or empty; 0 where V = 0 and theta is undefined
   std::vector<double> machine_base;       ///< rows: machine base [MVA]; empty without operating points
   std::vector<std::int16_t> codes;        ///< rows x channels x samples; empty for float32 records

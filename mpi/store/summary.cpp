@@ -26,8 +26,8 @@ std::string describe_attempts(const std::filesystem::path& folder) {
                         a.ended.empty() ? "killed, or still running" : a.outcome + " at " + a.ended);
   }
   if (attempts.empty()) return {};
-  return fmt::format("{} attempts: {} killed, {} failed; {} shards generated again\n", attempts.size(),
-                     killed, failed, repaired) +
+  return fmt::format("{} attempts: {} killed or still running, {} failed; {} shards generated again\n",
+                     attempts.size(), killed, failed, repaired) +
          text;
 }
 

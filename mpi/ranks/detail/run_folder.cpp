@@ -23,7 +23,7 @@ FolderLocks lock_folder(const fs::path& folder, const store::Part& part) {
   make_folder(folder);
   const auto lock = [&](const fs::path& file, const std::string& what, RunLock::Kind kind) {
     return std::make_unique<RunLock>(
-        file, LockWords{what, folder.string(), "wait for it to end, or choose another folder"},
+        file, LockWords{what, folder.string(), "wait until that run ends, or choose another folder"},
         std::chrono::seconds(5), kind);
   };
   if (part.all()) return {lock(folder / kLockFile, "dataset in use", RunLock::Kind::alone), nullptr};
@@ -89,7 +89,7 @@ void claim_folder(const fs::path& folder, const store::DatasetHeader& header, Fo
   if (fs::exists(folder / "dataset.json")) return require_same_config(folder, header);
   if (!is_unclaimed(folder)) {
     locks.withdraw();
-    throw InputError({"output folder in use", folder.string(), "it holds files but no dataset",
+    throw InputError({"output folder is not empty", folder.string(), "it holds files but no dataset",
                       "give a new or empty folder"});
   }
   store::write_header(folder, header);
@@ -120,9 +120,10 @@ void require_same_cut(const fs::path& folder, const store::Part& part) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with("journal-") && !name.ends_with(ending))
-      throw InputError({fmt::format("part {} of {}", part.number, part.of), "--part",
-                        "the folder has the journal " + name + ", which divides the dataset differently",
-                        "use the same --part as before, or omit --part once every part has ended"});
+      throw InputError(
+          {fmt::format("part {} of {}", part.number, part.of), "--part",
+           "the folder has the journal " + name + ", which divides the dataset differently",
+           "give --part with the same number of parts as before, or omit it once every part has ended"});
   }
 }
 
