@@ -22,8 +22,9 @@ inline void require_channels(const std::vector<std::string>& names,
                              Problems& problems) {
   for (const std::string_view name : required)
     if (channel_index(names, name) < 0)
-      problems.add("no channel " + std::string(name), "channels", why,
-                   "add it to record.channels, or choose another `form`");
+      problems.add(
+          "no channel " + std::string(name), "channels", why,
+          "add it to the experiment's channels (the dataset must record it), or choose another `form`");
 }
 
 }  // namespace swingbank::train::data

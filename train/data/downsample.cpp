@@ -41,7 +41,8 @@ void InputSelection::apply(const float* record, std::size_t record_samples, doub
 
 namespace {
 
-/// Returns the reactance between terminal and E: the middle of the box of X''d or X'd, or a typical value.
+/// Returns the reactance between the terminal and the internal voltage E: the middle of the interval of X''d
+/// or X'd, or a typical value.
 double shown_reactance(const mpi::store::DatasetHeader& d) {
   // A typical value of X'd and X''d suffices, because E is only an input.
   constexpr double kTypical = 0.3;

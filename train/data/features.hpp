@@ -1,7 +1,7 @@
 #pragma once
-// Features: a network's input, computed from a record's series. Either the series are normalised, after an
-// optional PCA of each second, or they are whitened (form "physics"). The transformation is fitted on
-// training rows only.
+// Features: a network's input, computed from a record's series. The series are normalised, after an optional
+// PCA of each second, or whitened (form "physics"), or unchanged (form "swing"). The transformation is fitted
+// on training rows only.
 #include <optional>
 #include <span>
 

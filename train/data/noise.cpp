@@ -64,7 +64,8 @@ RecordNoise::RecordNoise(const mpi::store::DatasetHeader& dataset, const NoiseRe
     const auto channel = known(name);
     if (!channel)
       problems.add("no noise model of channel " + name, dataset.name.empty() ? "dataset" : dataset.name,
-                   "the noise model covers measured channels only", "read this dataset without noise");
+                   "the noise model covers measured channels only",
+                   "leave out --noise and training_noise, or generate the dataset without this channel");
     channels_.push_back(channel.value_or(Noisy{}));
     if (channel && channel->kind == Kind::frequency && system_frequency_ <= 0)
       problems.add("no system frequency", dataset.name.empty() ? "dataset.json" : dataset.name,

@@ -20,7 +20,7 @@ struct NoiseLevels {
 
 /// Noise of a run.
 struct NoiseRecipe {
-  double level = 0;  ///< 0: records are unchanged
+  double level = 0;  ///< level of all rows; with `training`, of the test rows only; 0: no noise
   std::uint64_t seed = 1;
   std::optional<NoiseLevels> training = {};  ///< if present, each training row has a random level
 };
@@ -44,7 +44,8 @@ class RecordNoise {
   [[nodiscard]] bool none() const { return recipe_.level == 0; }
   [[nodiscard]] double level(std::uint64_t row, const Noise& noise) const;
   /// Adds noise to a record, channels x samples of the dataset's row `row`. If each row has a random level,
-  /// the noise consists of segments of one stored series; this takes a tenth of the time.
+  /// the noise consists of segments of one stored series; this takes a tenth of the time of new random
+  /// numbers.
   void add(std::uint64_t row, const Noise& noise, float* record) const;
   /// Adds noise of the recipe's level, realisation 0.
   void add(std::uint64_t row, float* record) const { add(row, {recipe_.level}, record); }

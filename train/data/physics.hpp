@@ -17,15 +17,15 @@ struct PhysicsWindow {
   double rate = 0.0;                     ///< sampling rate of the record [1/s]
   double start_s = 0.0, end_s = 0.0;     ///< window [s]
   double event_s = 0.0;                  ///< event time [s]; the record is steady before it
-  double reactance = 0.0;                ///< X''d or X'd between terminal and E [pu on the machine base]
+  double reactance = 0.0;                ///< X''d or X'd, between the terminal and E [pu on the machine base]
   double least_voltage = kLeastVoltage;  ///< lower limit of V as the divisor of P and Q [pu]
 };
 
-/// Computation of the signals. Channels in this order: P/V, Q/V, V, E, angle of E relative to the terminal,
-/// integral of P. If recorded, the speed and its integral follow, then the field current and its integral. If
-/// speed and frequency are recorded, frequency and the integral of their difference follow. All signals are
-/// relative to their mean before the event. Samples are means over bins: one sample of the record until 1 s
-/// after the event, 1/30 s until 5 s, then 1/15 s.
+/// Computation of the signals. Channels in this order: P/V, Q/V, V, E (voltage behind the reactance), angle
+/// of E relative to the terminal, integral of P. If recorded, the speed and its integral follow, then the
+/// field current and its integral. If speed and frequency are recorded, frequency and the integral of their
+/// difference follow. All signals are relative to their mean before the event. Samples are means over bins:
+/// one sample of the record until 1 s after the event, 1/30 s until 5 s, then 1/15 s.
 class Physics {
  public:
   Physics() = default;

@@ -88,7 +88,7 @@ void ShardStream::take(const mpi::store::ShardData& shard) {
 void ShardStream::require_rows() const {
   if (dataset_.rows == 0)
     throw InputError({"no rows", dataset_.path.string(), "every draw was rejected, or none was made",
-                      "see the outcomes in its journal and the ranges in its config"});
+                      "see the outcomes in the dataset's journal and the ranges in its config"});
 }
 
 std::size_t ShardStream::kept() const {
@@ -107,8 +107,8 @@ void ShardStream::append(mpi::store::Dataset more) {
   const auto same = [&](bool equal, const char* what) {
     if (!equal)
       problems.add(std::string("a different ") + what, more.path.string(),
-                   "additional training rows must agree in it with " + d.path.string(),
-                   "generate them from a config with the same [record] and [vary]");
+                   "it must be the same as in " + d.path.string(),
+                   "generate the training dataset from a config with the same [record] and [vary]");
   };
   same(more.channel_names == d.channel_names, "list of channels");
   same(more.rate == d.rate && more.samples == d.samples, "rate or length");

@@ -30,7 +30,8 @@ struct StreamOptions {
   NoiseRecipe noise = {};
 };
 
-inline constexpr std::uint64_t kValidationDraw = std::uint64_t{1} << 32;  ///< above any epoch's number
+inline constexpr std::uint64_t kValidationDraw =
+    std::uint64_t{1} << 32;  ///< noise of validation rows, above any epoch's number
 
 class ShardStream {
  public:

@@ -55,8 +55,8 @@ std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
   return points;
 }
 
-/// Appends the rows for training only to the training rows; rows of generators set aside become recalibration
-/// rows.
+/// Appends the rows of the training dataset to the training rows; those of generators set aside become
+/// recalibration rows.
 void add_training_rows(const Labels& labels, const std::set<std::int32_t>& left_out, RowSplit& split) {
   for (std::uint64_t row = labels.judged; row < labels.rows; ++row) {
     if (left_out.contains(labels.generator[row])) continue;
@@ -149,7 +149,8 @@ void keep_share(RowSplit& split, const Labels& labels, double part) {
   kept.insert(kept.end(), more, more + static_cast<std::ptrdiff_t>(share(split.train.size() - own, part)));
   if (kept.empty())
     throw InputError({fmt::format("no training rows in a share of {}", part), "--train-share",
-                      fmt::format("the split has {}", split.train.size()), "give a larger share"});
+                      fmt::format("the split has {} training rows", split.train.size()),
+                      "give a larger share"});
   split.train = std::move(kept);
 }
 

@@ -19,8 +19,8 @@ struct RowSplit {
   std::vector<std::uint64_t> calibration = {};  ///< rows of these generators
 };
 
-/// Splits the groups of the dataset's rows: 60 % training, 20 % validation, 20 % test. Rows from
-/// Labels::judged are training rows. Throws InputError if a part is empty.
+/// Splits the groups of the dataset's rows: 60 % training, 20 % validation, 20 % test. Rows from number
+/// Labels::judged on, those of the training dataset, are training rows. Throws InputError if a part is empty.
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed);
 /// Plan of a leave-one-out split.
 struct LeaveOneOut {
@@ -28,19 +28,19 @@ struct LeaveOneOut {
   double validation_share = 0.0;
   std::uint64_t seed = 0;
   /// Generator whose rows are the test rows instead of those of `generator`, which are then not used at all.
-  /// Thus recipes can be chosen without the generator that the table leaves out.
+  /// Thus recipes can be chosen without the test rows of the result tables.
   std::optional<std::int32_t> judged = {};
   std::size_t set_aside = 0;  ///< number of generators for recalibration
 };
 /// Returns the split whose test rows are all rows of one generator. The rows of the generators set aside are
 /// for recalibration. Of the remaining generators' databank samples, `validation_share` is for validation and
-/// the rest for training. Rows from Labels::judged are training or recalibration rows, except those of the
-/// generators left out. Throws InputError if the generator has no rows, or if training or validation is
-/// empty.
+/// the rest for training. Rows from number Labels::judged on are training or recalibration rows, except those
+/// of the generators left out. Throws InputError if the generator has no rows, or if training or validation
+/// is empty.
 RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan);
 /// Returns the split whose test rows are the whole dataset. Of the databank samples of the rows from
-/// Labels::judged, `validation_share` is for validation and the rest for training. Throws InputError if one
-/// of the three parts is empty.
+/// number Labels::judged on, `validation_share` is for validation and the rest for training. Throws
+/// InputError if one of the three parts is empty.
 RowSplit split_across(const Labels& labels, double validation_share, std::uint64_t seed);
 /// Keeps a fraction of the training rows: the first rows of the dataset and of the training dataset, as if
 /// both datasets were smaller. Throws InputError if no row remains.

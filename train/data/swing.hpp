@@ -42,7 +42,7 @@ class SwingIntegrals {
 
   SwingIntegrals() = default;
   /// `names`: channels of the record. Throws InputError unless P, Q, V, speed and frequency are among them,
-  /// or if the window is shorter than two tapers.
+  /// or if the window starts before the event or is shorter than two tapers.
   SwingIntegrals(const std::vector<std::string>& names, const SwingWindow& window);
 
   [[nodiscard]] const SwingWindow& window() const { return window_; }

@@ -20,7 +20,7 @@ constexpr float kMiddleInDeviations = 2.56f;
 constexpr float kStillRow = 1e-6f;  ///< added to a row's size, which is 0 for a constant row [pu]
 constexpr double kRank = 1e-9;      ///< relative variance up to which a component is rounding error
 constexpr std::size_t kRowsOfNoise = 5000;
-constexpr double kSmallLevel = 1e-4;        ///< noise level of the fit; the noise is proportional to it
+constexpr double kSmallLevel = 1e-4;  ///< noise level of the fit; the noise is proportional to its level
 constexpr float kWidestCoefficient = 4.0f;  ///< limit of a coefficient's deviation from its median, in widths
 /// Limit of a row's noise, as a multiple of the median: a low voltage near a fault amplifies the noise.
 constexpr float kLongestNoise = 3.0f;
@@ -191,7 +191,7 @@ void Whitening::apply(const float* series, std::size_t count, float* out) const 
     }
   }
   const auto bounded = static_cast<Index>(length() - sizes_.regressed);
-  // reduces values far outside the range of the training rows
+  // asinh reduces values far outside the range of the training rows
   row.leftCols(bounded) = row.leftCols(bounded).unaryExpr([](float v) { return std::asinh(v); });
   if (sizes_.regressed == 0) return;
   const auto values =

@@ -1,9 +1,9 @@
 #pragma once
 // Transformation of series to a short row of uncorrelated numbers of equal variance. Each channel is divided
 // by the row's size, the root mean square of the first channel. The principal components of all channels are
-// whitened together and bounded by asinh. If rows have different noise levels, the numbers are also rotated
-// until their noise is uncorrelated. They are then multiplied by the signal's share of the variance at the
-// row's noise level. Fitted on training rows only.
+// whitened together. If rows have different noise levels, the whitened numbers are rotated until their noise
+// is uncorrelated, and multiplied by the signal's share of the variance at the row's noise level. All are
+// then compressed by asinh. Fitted on training rows only.
 #include <Eigen/Dense>
 #include <span>
 #include <vector>
@@ -57,7 +57,7 @@ class Whitening {
   /// Computes the median and width of each regression coefficient over the rows.
   void fit_regressions(const Rows& series, std::vector<float> weights);
   void apply_regressions(const float* series, float* out) const;
-  /// Returns the whitened numbers before the bound by asinh.
+  /// Returns the whitened numbers before the compression by asinh.
   [[nodiscard]] Rows whitened(const Rows& components) const;
 
   WhiteningSizes sizes_;
