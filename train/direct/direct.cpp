@@ -18,7 +18,7 @@ namespace swingbank::train::direct {
 namespace {
 
 namespace store = mpi::store;
-constexpr double kWeights = 1e-4;       ///< noise level that determines channel weights without noise
+constexpr double kWeights = 1e-4;       ///< noise level for channel weights if the records have no noise
 constexpr double kNoPrior = 1e3;        ///< standard deviation of a prior without influence [box widths]
 constexpr std::size_t kRowsRead = 512;  ///< rows read at once
 enum class Method { closed_form, refined, curve_fit, floor, from_start };  ///< in order of kMethods
@@ -34,15 +34,16 @@ class Rows {
     if (!effect_ || (!effect_->closed_form && method != Method::from_start))
       problems.add("no closed form for " + d.machine_model, where,
                    "the closed-form estimator does not support this machine model",
-                   "leave closed-form and refined out of the preset's networks");
+                   "leave closed-form, refined, curve-fit, floor and corrects out of the preset");
     const bool likely = method != Method::closed_form;
     if (effect_ && likely && !sim::direct::has_likelihood(*effect_))
       problems.add("no likelihood for " + d.machine_model, where,
                    "it has too many states, or no constant impedance behind its terminal",
-                   "leave refined, curve-fit and floor out of the preset's networks");
+                   "leave refined, curve-fit, floor and steps_from out of the preset");
     if (!d.parameter_effects.empty())
-      problems.add("parameters of other effects", where, "a closed form estimates machine parameters only",
-                   "leave closed-form and refined out of the preset's networks");
+      problems.add("parameters of other effects", where,
+                   "methods without training estimate machine parameters only",
+                   "leave closed-form, refined, curve-fit, floor, corrects and steps_from out of the preset");
     fluxes_ = effect_ && effect_->states.size() > 2;
     for (const char* name : {"V", "P", "Q", "speed", "Ifd"})
       if (channel(name) < 0 && (fluxes_ || name != std::string_view("Ifd"))) missing(name, problems, where);
@@ -138,7 +139,7 @@ class Rows {
     return at == dataset_.channel_names.end() ? -1 : static_cast<int>(at - dataset_.channel_names.begin());
   }
   static void missing(const std::string& name, Problems& problems, const std::string& where) {
-    problems.add("no channel " + name, where, "the closed form needs it",
+    problems.add("no channel " + name, where, "methods without training need it",
                  "record it ([record] channels of the dataset's config)");
   }
   [[nodiscard]] sim::Recording recording(const store::RowBlock& block, std::size_t row) const {

@@ -15,7 +15,7 @@ namespace swingbank::train::direct {
 /// - "closed-form": linear least squares, on smoothed signals if there is noise.
 /// - "refined": maximum a posteriori estimate, started from the closed form. Without noise, a
 /// Levenberg-Marquardt fit of the fluxes gives a further start, and channels are weighted as if they had
-/// noise of 0.01 %.
+/// noise of 0.01 %; for a machine without flux states, the search for the maximum is omitted.
 /// - "curve-fit": least squares of P, Q, speed and field current with played-in voltage, from the effect's
 /// defaults only, bounded by the box but without a prior. It corresponds to programs such as EPRI's PPPD,
 /// with which the thesis compares.

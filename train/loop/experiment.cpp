@@ -30,8 +30,8 @@ std::vector<std::string> network_names() {
 /// preset's value (in a network's table).
 enum class Missing { refused, standard, inherited };
 
-/// A table, and the table of the same name in the preset that its preset copies, if it copies one. A key that
-/// the table lacks is read from the copied one.
+/// Table of a preset. If the preset copies another preset (`like`), a key that this table lacks is read from
+/// the table of the same name in the other preset.
 class Table {
  public:
   Table(const Config& c, std::string at, std::optional<std::string> copied)
@@ -186,7 +186,8 @@ void refuse_unknown_posteriors(Config& c, const Table& at, const TrainingRecipe&
             "leave training_noise and posterior_epochs out");
 }
 
-/// The likelihood needs the level of the noise, and the network a file of its own.
+/// Records a problem if a likelihood search (steps_from) has a run without noise, or if the network from
+/// whose estimates it starts has no file.
 void refuse_steps_without_noise(Config& c, const Table& at, const Preset& p, const std::string& network) {
   const std::string& from = p.training.at(network).steps_from;
   if (from.empty()) return;
@@ -214,10 +215,10 @@ std::optional<std::string> copied_preset(Config& c, const std::string& name) {
   const std::string key = "preset." + name + ".like";
   if (!c.has(key)) return std::nullopt;
   const auto other = c.require<std::string>(
-      key, {.meaning = "preset whose keys and tables this one has, except those that it gives itself"});
+      key, {.meaning = "preset from which this one takes the keys and tables that it does not give itself"});
   if (other.empty() || !c.is_table("preset." + other) || c.has("preset." + other + ".like"))
-    c.problem(key, fmt::format("no preset called '{}' that copies none itself", other),
-              "a preset can copy only one that is complete", "name such a preset, or leave like out");
+    c.problem(key, fmt::format("preset '{}' cannot be copied", other),
+              "it does not exist, or copies another preset", "name a preset without like, or leave like out");
   return other.empty() ? "" : "preset." + other;
 }
 
@@ -257,7 +258,7 @@ Preset read_preset(Config& c, const std::string& name) {
     const std::string like =
         steps_from.empty()
             ? c.optional<std::string>(own.path("like"), "",
-                                      {.meaning = "earlier network of the preset that it copies"})
+                                      {.meaning = "earlier network of the preset that this one copies"})
             : steps_from;
     if (!like.empty() && !p.training.contains(like))
       c.problem(own.path(copy), fmt::format("no network called '{}' before '{}'", like, network),

@@ -48,9 +48,10 @@ struct NetworkInput {
 
 /// Evaluation of a network.
 struct Judging {
-  std::vector<double> noise;        ///< levels (sim/core/measurement_noise.hpp); 0: no noise
-  std::size_t test_rows = 0;        ///< approximate number of rows, evenly spaced; 0: all
-  std::vector<double> shares = {};  ///< fractions of the training rows; one more run each (first level, fold)
+  std::vector<double> noise;  ///< levels (sim/core/measurement_noise.hpp); 0: no noise
+  std::size_t test_rows = 0;  ///< approximate number of rows, evenly spaced; 0: all
+  std::vector<double> shares =
+      {};  ///< fractions of the training rows; one more run each, at the first level and fold
 };
 
 struct Preset {
@@ -82,7 +83,7 @@ struct Experiment {
   std::string title;
   std::filesystem::path dataset;           ///< config of the dataset
   std::filesystem::path training_dataset;  ///< config of additional training rows; empty: none
-  bool leave_one_out = false;              ///< leave-one-out split; 60/20/20 if `across` is false too
+  bool leave_one_out = false;              ///< leave-one-out split; if neither this nor `across`: 60/20/20
   bool across = false;                     ///< trains on training_dataset, tests on the whole `dataset`
   std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out, one per fold
   std::map<std::string, Preset> presets;

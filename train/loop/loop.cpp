@@ -236,7 +236,7 @@ class Loop {
         operations_per_row_ / (settings_.gflops * 1e9 * static_cast<double>(size_));
     const double percent = settings_.gflops > 0.0 ? 100.0 * samples_per_s * seconds_per_row : 0.0;
     if (percent < 1.0) return fmt::format("{:.0f} samples/s", samples_per_s);
-    return fmt::format("{:.0f} samples/s, {:.0f} % of the {:.0f} that its matrix products alone allow",
+    return fmt::format("{:.0f} samples/s, {:.0f} % of the {:.0f} that the matrix products alone allow",
                        samples_per_s, percent, 1.0 / seconds_per_row);
   }
 

@@ -34,7 +34,7 @@ struct LoopData {
   /// Estimates to correct, all rows x outputs [scaled]; they are appended to the features.
   std::span<const float> guesses = {};
   std::span<const float> weights = {};  ///< weights of the outputs' squared errors, mean 1; empty: equal
-  /// Scalar loss of outputs and scaled targets; empty: weighted mean squared error.
+  /// Scalar loss of outputs and scaled targets; empty: Network::loss, else weighted mean squared error.
   std::function<at::Tensor(const at::Tensor&, const at::Tensor&)> loss = {};
 };
 
@@ -46,7 +46,7 @@ struct LoopSettings {
   double checkpoint_every_s = 30.0;       ///< interval of checkpoints within an epoch [s]
   double checkpoint_after_epoch_s = 2.0;  ///< an epoch's end saves one if the last is older than this [s]
   std::uint64_t first_draw = 0;           ///< noise realisation of the first epoch; each epoch uses the next
-  double gflops = 0.0;                    ///< rate of matrix products [GFLOP/s]; 0: unknown
+  double gflops = 0.0;                    ///< peak rate of matrix products [GFLOP/s]; 0: unknown
   std::function<bool()> stop;             ///< polled before each batch; empty: stop_asked()
   const mpi::items::Ranks* ranks = nullptr;  ///< ranks that train together; null: this process alone
   /// Called on rank 0 with the curve so far, after each epoch and after a resume; may be empty.

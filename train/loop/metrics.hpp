@@ -1,5 +1,6 @@
 #pragma once
-// Scores of a network in raw units, and of the baseline, a constant prediction.
+// Scores of a network in raw units, and of the baseline, the mean of the training targets as a constant
+// prediction.
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -29,7 +30,7 @@ struct ScoreInput {
   std::span<const double> predicted, truth;  ///< rows x parameters, raw units
   std::span<const double> training_mean;     ///< one value per parameter
   std::vector<std::string> names, units;
-  std::vector<double> low, high;  ///< the sampling box
+  std::vector<double> low, high;  ///< ends of the parameter intervals
 };
 Score score(const ScoreInput& input);
 

@@ -1,7 +1,7 @@
 // The thesis's convolutional network, section "Networks": conv 256 filters, kernel N/4, same, ReLU, max-pool
 // 4; conv 512 filters, kernel N/4, same, ReLU, max-pool 2; dense 1024, dense 256, each ReLU and dropout 0.2;
-// one ReLU output per parameter. N is the input length. In this file, time is the first dimension of a
-// tensor.
+// one ReLU output per parameter. N is the input length. Between the layers, time is the first dimension of
+// a tensor.
 #include <ATen/ATen.h>
 
 #include "base/problem.hpp"

@@ -1,7 +1,7 @@
 // Residual network on whitened inputs. A dense layer feeds a trunk of 768 units. Three residual blocks (layer
 // norm, dense 768, GELU, dense 768) follow, then layer norm, GELU and a linear output. The output initially
-// equals the mean of the targets. The blocks initially add zero, so that the first steps train a linear map
-// (Goyal et al. 2017, section 5.1; Xiong et al. 2020 on the position of the norm).
+// equals the mean of the targets. The blocks initially add only a constant, so that training starts with a
+// shallow network (Goyal et al. 2017, section 5.1; Xiong et al. 2020 on the position of the norm).
 #include <ATen/ATen.h>
 
 #include <array>

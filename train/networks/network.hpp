@@ -59,7 +59,7 @@ struct NetworkRecord {
 /// Returns all networks in order of name.
 const std::vector<NetworkRecord>& all_networks();
 /// Creates a network with weights from torch's generator, which must be seeded before. Throws InputError with
-/// the known names for an unknown name, or if the shape is too short for the network.
+/// the known names for an unknown name, or if the series are too short for the network.
 std::unique_ptr<Network> make_network(const std::string& name, const NetworkShape& shape);
 /// Returns the number of weights.
 std::int64_t parameter_count(Network& network);

@@ -21,8 +21,8 @@ using at::Tensor;
 constexpr std::int64_t kIntegralTerms = 6;  ///< integrals per test function (train/data/swing.hpp)
 constexpr int kPasses = 3;      ///< iterations, because the weights depend on the solution H and D
 constexpr double kBias = 1e-2;  ///< unit of the learned biases
-/// Precision of the prior of H and D around the mean of their training targets, in units of the noise
-/// variance. It only keeps the matrix regular.
+/// Precision of the prior of H and D around the mean of their training targets. Multiplied by the noise
+/// variance, it is added to the normal matrix, only to keep it regular.
 constexpr double kPriorPrecision = 1e-2;
 /// Initial precision of P0: the usual number of samples before the event, whose mean is P0.
 constexpr double kSteadyCount = 238;

@@ -1,5 +1,6 @@
 #pragma once
-// Recalibration of normal scores by rows that were not used in training. The map is monotone and piecewise
+// Recalibration of normal scores by rows that were not used in training. A normal score is the standard
+// normal quantile of a value's cumulative probability under the posterior. The map is monotone and piecewise
 // linear, and makes the scores of these rows standard normal (Kuleshov, Fenner and Ermon 2018).
 #include <array>
 #include <span>

@@ -122,7 +122,8 @@ std::vector<double> estimates(const Trained& trained, const PreparedRun& run, co
   return raw;
 }
 
-/// Returns the network of steps_from, and trains it if its result does not exist; null if this was stopped.
+/// Returns the network of steps_from, and trains it if its result does not exist; null if this training was
+/// stopped.
 std::unique_ptr<Trained> network_of_start(const PreparedRun& run) {
   RunRequest r = run.request;
   r.network = run.recipe.steps_from;
@@ -254,7 +255,7 @@ class NetworkRun {
     write_text(result, result_json(run_, parts).dump(2) + "\n");
     for (const char* kind : {".checkpoint", ".posterior.checkpoint"})
       std::filesystem::remove(std::filesystem::path(checkpoint_).replace_extension(kind));
-    progress_.line(fmt::format("{}; MSE {:.4g} on rows of generators that trained; best epoch {} of {}",
+    progress_.line(fmt::format("{}; MSE {:.4g} on validation rows; best epoch {} of {}",
                                scored(score, trained.report.seconds), seen, trained.report.best_epoch,
                                trained.report.epochs));
   }
@@ -339,7 +340,7 @@ bool begin(const PreparedRun& run, const std::filesystem::path& result, std::opt
       run.recipe.noise_levels ? std::chrono::hours(12) : run.request.patience;
   lock.emplace(
       locks / (training_name(run.request) + ".lock"),
-      LockWords{"result file in use", result.string(), "wait for it to end, or choose another --out"},
+      LockWords{"result file in use", result.string(), "wait until that run ends, or choose another --out"},
       patience);
   return !already_done(result, run.identity);
 }

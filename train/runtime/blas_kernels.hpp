@@ -1,7 +1,7 @@
 #pragma once
 // Selection of the BLAS library's kernels. OpenBLAS selects its kernels by a list of processor models. A
-// processor newer than the list gets kernels of 2004, which have a quarter of the speed in Debian 12's
-// version.
+// processor newer than the list in Debian 12's version gets kernels of 2004, at a quarter of the possible
+// speed.
 #include <string>
 
 namespace swingbank::train::runtime {

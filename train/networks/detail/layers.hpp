@@ -1,6 +1,6 @@
 #pragma once
-// Initial weights as in torch::nn (uniform within 1 / sqrt(fan-in)), and the output layer common to all
-// networks.
+// Initial weights as in torch::nn (uniform within 1 / sqrt(fan-in)), and the output layer of all networks
+// except `swing`.
 #include <ATen/ATen.h>
 
 #include <cmath>
@@ -21,7 +21,8 @@ struct Dense {
   [[nodiscard]] at::Tensor operator()(const at::Tensor& x) const { return at::addmm(bias, x, weight); }
 };
 
-/// Returns the thesis's ReLU output layer. `start`: initial bias, the mean of the targets.
+/// Returns the linear output layer, to whose outputs the thesis's networks apply ReLU. `start`: initial bias,
+/// the mean of the targets.
 inline Dense output_layer(std::int64_t in, const std::vector<float>& start) {
   Dense layer(in, static_cast<std::int64_t>(start.size()));
   layer.bias = at::tensor(start, at::kFloat).requires_grad_(true);

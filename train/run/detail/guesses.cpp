@@ -67,7 +67,8 @@ std::vector<float> guesses(const data::ShardStream& stream, const std::string& m
   const std::size_t size = stream.labels().rows * stream.labels().parameters;
   std::vector<float> values;
   if (read(file, identity, size, values)) return values;
-  RunLock lock(file.string() + ".lock", {"a second process", file.string(), "wait for it to end"}, kPatience);
+  RunLock lock(file.string() + ".lock",
+               {"file of starting estimates in use", file.string(), "wait until that run ends"}, kPatience);
   if (!read(file, identity, size, values)) {
     values = make(stream, method, quiet);
     write_sealed(kGuesses, file, identity, {values});

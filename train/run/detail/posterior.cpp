@@ -112,7 +112,7 @@ json judged_on(const Trained& trained, const PreparedRun& run, std::span<const s
   return coverage_json(found, run, head, rows.size());
 }
 
-/// Returns the left-out generator's rows in the training dataset.
+/// Returns the left-out generator's rows in the training dataset; none if no generator was set aside.
 std::vector<std::uint64_t> other_rows(const PreparedRun& run) {
   const data::Labels& labels = run.stream.labels();
   std::vector<std::uint64_t> rows;

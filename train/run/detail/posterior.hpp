@@ -42,8 +42,9 @@ std::unique_ptr<posterior::Head> make_head(networks::Network& network, const mpi
 /// Trains and recalibrates the head. Returns false if the training was stopped; a checkpoint is then saved.
 bool train_posterior(Trained& trained, const PreparedRun& run, loop::LoopSettings settings,
                      std::span<const float> targets, loop::TrainingProgress& progress);
-/// Returns coverage, ranks and widths for the result file, on the test rows. With a training dataset, also on
-/// its rows of the left-out generator, which are never used in training.
+/// Returns coverage, ranks and widths for the result file, on the test rows. With a training dataset and
+/// generators set aside, also on that dataset's rows of the left-out generator, which are never used in
+/// training.
 nlohmann::json judge_posterior(const PreparedRun& run, const Trained& trained);
 
 /// Returns a function that estimates a plant's parameters [raw units] from several test rows by the product
