@@ -1,6 +1,7 @@
 #pragma once
 // Reading of untrusted files in a separate process, because HDF5 1.10 and libmatio crash on some damaged
-// files. The program is swingbank-read-hdf5 in this program's folder; it returns the content through a pipe.
+// files. The process runs swingbank-read-hdf5 from the folder of this program, and returns the content
+// through a pipe.
 #include <filesystem>
 #include <functional>
 #include <string>

@@ -51,8 +51,8 @@ inline bool interruption_asked() { return detail::interruptible != 0 && stop_ask
 inline void ask_to_stop() { detail::stop_asked = 1; }
 
 /// Guard that makes work during its lifetime interruptible: Ctrl-C ends it at the next interruption point.
-/// The destructor restores the handlers of the host program, such as Python. In a thread other than the main
-/// one, the guard leaves the handler unchanged.
+/// The destructor restores the SIGINT handler of the host program, such as Python. In a thread other than the
+/// main one, the guard leaves the handler unchanged.
 class InterruptOnSigint {
  public:
   InterruptOnSigint() {

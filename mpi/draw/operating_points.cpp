@@ -128,7 +128,8 @@ OperatingPoint draw_point(const Study& study, std::uint64_t block) {
   for (std::uint64_t i = 0; i < kMostDraws && !point.grid; ++i)
     point.grid = try_once(study, block * kMostDraws + i, point.redrawn);
   if (point.grid) return point;
-  throw InputError({fmt::format("no operating point for block {}", block), study.config.file.string(),
+  throw InputError({fmt::format("no operating point for block {} of draws", block),
+                    study.config.file.string(),
                     fmt::format("the power flow did not converge for {} of {} random operating points, and "
                                 "{} others were implausible",
                                 point.redrawn.no_power_flow, kMostDraws, point.redrawn.implausible),

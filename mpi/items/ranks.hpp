@@ -11,7 +11,7 @@ namespace swingbank::mpi::items {
 
 /// Items and their work.
 struct SharedItems {
-  std::vector<std::size_t> items;  ///< the same on all ranks
+  std::vector<std::size_t> items;  ///< numbers of the items, the same on all ranks
   /// Processes an item on any rank. Must not call MPI, because on rank 0 it runs in a separate thread. Its
   /// return value is sent to rank 0.
   std::function<std::string(std::size_t item)> work;
@@ -38,7 +38,7 @@ class Ranks {
   /// Replaces each value by its sum over the ranks; all ranks get the same sums. Collective.
   virtual void sum(std::span<float> values) const = 0;
   /// Runs `prepare` on every rank. If it throws on any rank, all ranks throw the problems of the first such
-  /// rank. Collective.
+  /// rank. `where`: place named in the message if the exception is not an InputError. Collective.
   virtual void agree(const std::string& where, const std::function<void()>& prepare) const = 0;
   /// Processes the items until all are done or a rank receives a stop signal (base/stop_signal.hpp). After a
   /// stop signal, items in progress are finished and no others are started. Collective; rank 0 distributes

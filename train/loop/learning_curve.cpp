@@ -71,7 +71,7 @@ void append(const std::filesystem::path& file, const std::string& text) {
   out << text << std::flush;
   if (!out)
     throw InputError({"the learning curve cannot be written", file.string(), std::strerror(errno),
-                      "free space there, and run the same command again"});
+                      "check space and permissions there, then run the same command again"});
 }
 
 }  // namespace

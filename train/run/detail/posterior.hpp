@@ -48,7 +48,7 @@ bool train_posterior(Trained& trained, const PreparedRun& run, loop::LoopSetting
 nlohmann::json judge_posterior(const PreparedRun& run, const Trained& trained);
 
 /// Returns a function that estimates a plant's parameters [raw units] from several test rows by the product
-/// of their posteriors. Constant parameters are at the middle of their box.
+/// of their posteriors. Constant parameters keep their value.
 std::function<std::vector<double>(std::span<const std::size_t>)> product_of_posteriors(
     const PreparedRun& run, const Trained& trained);
 
