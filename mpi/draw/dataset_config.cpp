@@ -130,7 +130,7 @@ void read_effects(Config& c, DatasetConfig& d) {
   for (const auto& text : c.optional<std::vector<std::string>>(
            "attach", {},
            {.meaning =
-                "PLANT:EFFECT:PARAM=VALUE,...: effects that the .dyr lacks; PLANT all: every plant"})) {
+                "PLANT:EFFECT:PARAM=VALUE,...: effects that the .dyr lacks; PLANT = all: every plant"})) {
     d.attachments.push_back(
         sim::plant::read_attachment(text, d.library, "attach = '" + text + "'", problems));
     const sim::Effect* effect = d.attachments.back().block.effect;
@@ -155,27 +155,36 @@ void read_case(Config& c, DatasetConfig& d) {
   sim::grid::CaseOptions& o = d.grid_case;
   o.dyr = sim::formats::read_dyr_options(c, "");
   if (c.has("frequency_hz"))
-    o.raw.frequency_hz =
-        c.require<double>("frequency_hz", {1.0, 1000.0, "Hz", "nominal frequency, for a network in .m"});
+    o.raw.frequency_hz = c.require<double>(
+        "frequency_hz", {1.0, 1000.0, "Hz", "nominal frequency, for a network in .m or .epc"});
   o.raw.version = static_cast<int>(
       c.optional<std::int64_t>("raw_version", 0, {0.0, 35.0, "", "version of the .raw; 0: from its header"}));
   o.net_generators = c.optional<bool>(
       "net_generators", false, {.meaning = "generators without a machine model become negative loads"});
-  d.widen_limits = c.optional<bool>("widen_limits", false,
-                                    {.meaning = "limits that the operating point violates are widened"});
+  d.widen_limits =
+      c.optional<bool>("widen_limits", false,
+                       {.meaning = "control limits that exclude the operating point are extended to it"});
   o.start_from_file = c.choice("start", {"solved", "file"}, "solved",
                                {.meaning = "operating point: power flow, or voltages of the file"}) == "file";
   o.flow.reactive_limits = c.choice("q_limits", {"enforce", "ignore"}, "enforce",
                                     {.meaning = "limits of reactive power in the power flow"}) == "enforce";
-  o.drop_refused = o.raw.drop_refused =
-      c.optional<bool>("drop_refused", false, {.meaning = "leave out models that cannot be initialised"});
-  o.raw.repeated = sim::grid::choose(c, "repeated", sim::grid::kRepeatedWords, o.raw.repeated,
-                                     {.meaning = "treatment of repeated records of the .raw"});
-  o.complete_records =
-      sim::grid::choose(c, "complete_records", sim::grid::kLackingWords, o.complete_records,
-                        {.meaning = "completion of records that are shorter than their model"});
-  o.raw.devices = sim::grid::choose(c, "devices", sim::grid::kDeviceWords, o.raw.devices,
-                                    {.meaning = "voltage regulation by devices of the network"});
+  o.drop_refused = o.raw.drop_refused = c.optional<bool>(
+      "drop_refused", false,
+      {.meaning = "ignore records of the .dyr with inadmissible parameter values, and network equipment "
+                  "with a repeated id or at a missing bus"});
+  o.raw.repeated = sim::grid::choose(
+      c, "repeated", sim::grid::kRepeatedWords, o.raw.repeated,
+      {.meaning =
+           "network equipment with a repeated id: refuse it, keep it under a new id (keep), or only if "
+           "this improves the power balance at the file's voltages (voltages)"});
+  o.complete_records = sim::grid::choose(
+      c, "complete_records", sim::grid::kLackingWords, o.complete_records,
+      {.meaning = "completion of records of the .dyr that are shorter than their model: none, with zeros, "
+                  "or with defaults (standard)"});
+  o.raw.devices = sim::grid::choose(
+      c, "devices", sim::grid::kDeviceWords, o.raw.devices,
+      {.meaning = "power of dc lines, FACTS and GNE devices and induction machines: from the file's "
+                  "voltages, if these are a solution (checked) or always (file), or zero (none)"});
 }
 
 void read_vary(Config& c, DatasetConfig& d) {
@@ -191,8 +200,8 @@ void read_vary(Config& c, DatasetConfig& d) {
   if (c.has("vary.generators") && d.generators.empty())
     c.problem("vary.generators", "no generator", "a dataset varies at least one",
               "list bus numbers of generators");
-  d.ids = c.optional<std::vector<std::string>>("vary.ids", {},
-                                               {.meaning = "ids of the varied units, in the same order"});
+  d.ids = c.optional<std::vector<std::string>>(
+      "vary.ids", {}, {.meaning = "ids of the varied units, in the order of vary.generators"});
   if (!d.ids.empty() && d.ids.size() != d.generators.size())
     c.problem("vary.ids", fmt::format("{} ids for {} generators", d.ids.size(), d.generators.size()),
               "entry i names the unit at entry i of vary.generators",
@@ -303,12 +312,12 @@ void read_operating_point(Config& c, std::optional<OperatingPointConfig>& point)
   p.per_block = static_cast<std::uint64_t>(c.optional<std::int64_t>(
       "operating_point.per_block", 2, count("draws that share one operating point")));
   interval("operating_point.loads", p.loads_low, p.loads_high,
-           {0.01, 10.0, "", "[low, high] factor of all loads and all dispatch"});
+           {0.01, 10.0, "", "[low, high] common factor of all loads and of the P of all generators"});
   p.load_spread = c.optional<double>(
       "operating_point.load_spread", 0.0,
       {0.0, 0.99, "", "s: each load is multiplied by an independent factor between 1 - s and 1 + s"});
   interval("operating_point.dispatch", p.dispatch_low, p.dispatch_high,
-           {0.01, 10.0, "", "[low, high] factor of each generator's P"});
+           {0.01, 10.0, "", "[low, high] individual factor of each generator's P"});
   p.voltage = c.optional<double>("operating_point.voltage", 0.0,
                                  {0.0, 0.2, "pu", "largest deviation of each voltage setpoint, up or down"});
   interval("operating_point.loading", p.loading_low, p.loading_high,
@@ -407,8 +416,8 @@ namespace {
 DatasetConfig read_values(Config& c, std::optional<double>& megabytes) {
   DatasetConfig d;
   d.file = c.name();
-  d.raw = c.file("raw", {.meaning = "network (.raw or .m), relative to the folder of this file"});
-  d.dyr = c.file("dyr", {.meaning = "dynamic models, relative to the folder of this file"});
+  d.raw = c.file("raw", {.meaning = "network (.raw, .m or .epc), relative to the folder of this file"});
+  d.dyr = c.file("dyr", {.meaning = "dynamic models (.dyr or .dyd), relative to the folder of this file"});
   read_case(c, d);
   d.psse = c.choice("convention", {"psse", "andes"},
                     Range{.meaning = "psse: governors determine mechanical power; andes: torque"}) != "andes";

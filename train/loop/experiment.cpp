@@ -109,14 +109,15 @@ void read_training(Config& c, const Table& at, bool complete, TrainingRecipe& t)
     k.number("validation_share", {0.01, 0.5, "", "fraction of the databank samples used for validation"},
              t.validation_share);
   Keys extra(c, at, default_of(complete));
-  extra.number("loss_power", {0.0, 1.0, "", "weight of a parameter's error: variance to this power"},
+  extra.number("loss_power",
+               {0.0, 1.0, "", "weight of a parameter's squared scaled error: its variance to this power"},
                t.loss_power);
   extra.number("weight_decay", {0.0, 1.0, "", "decoupled weight decay of matrices"}, t.weight_decay);
   extra.number("clip", {0.0, 1e6, "", "largest norm of the gradient; 0: no limit"}, t.clip);
   extra.number("average", {0.0, 0.99999, "", "decay factor of the averaged weights per step"}, t.average);
   extra.flag("training_rows", t.training_rows, "train on the rows of training_dataset too");
   extra.whole("posterior_epochs", 0, t.posterior_epochs, "epochs of the posterior head; 0: none");
-  extra.whole("set_aside", 0, t.set_aside, "generators whose rows calibrate the posterior only");
+  extra.whole("set_aside", 0, t.set_aside, "number of generators whose rows calibrate the posterior only");
 }
 
 /// Reads the noise levels of the training. A network trained at many levels needs the level as an input; only
@@ -233,7 +234,7 @@ Preset read_preset(Config& c, const std::string& name) {
   };
   events("draws", 1, "events to simulate", p.draws);
   if (c.has("training_dataset"))
-    events("training_draws", 0, "events to simulate of training_dataset", p.training_draws);
+    events("training_draws", 0, "events of training_dataset to simulate", p.training_draws);
   const auto known = network_names();
   if (at.reads("networks"))
     p.networks = c.table_names(
