@@ -65,8 +65,8 @@ struct UserModelCandidate {
 
 /// Returns the voltage deviation [pu] at which the signal "time since the voltage deviation" starts. It is
 /// above the voltage's noise. It is at most half of the largest deviation in any event with a switching, so
-/// that each such event starts the signal. Returns 0 if no event has a switching, or if the deviation in one
-/// of them is too small.
+/// that each such event starts the signal. Returns 0 if no event has a switching, or if the largest deviation
+/// in one of these events is too small.
 double trigger_level(const noise::WhitenedEvents& events);
 
 /// Returns the best candidate of each family and signal, in ascending order of score. `level`: see

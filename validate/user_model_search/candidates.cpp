@@ -22,7 +22,7 @@ struct Form {
   Shape shape = Shape::straight;
   /// Deviation at the limit, or half-width of the dead band; of a curve: its last point [pu].
   double width = 0;
-  double ratio = 0;  ///< of a curve: ratio of consecutive points
+  double ratio = 0;  ///< of a curve: ratio of each point to the next one, below 1
 };
 constexpr int kPoints = 4;  ///< number of points of a curve on either side of zero
 
@@ -107,7 +107,8 @@ void describe_curve(const Form& f, const Eigen::VectorXd& factors, UserModelCand
   std::string points, order;
   for (int k = 1; k <= kPoints; ++k) {
     double u = factors[k - 1];
-    if (std::abs(u) < least) u = std::copysign(least, u);  // relative steps cannot leave zero
+    if (std::abs(u) < least)
+      u = std::copysign(least, u);  // the fit changes values by factors, so a value of zero would stay zero
     user_model.parameters.push_back({fmt::format("w{}", k), "pu", point_of(f, k), 1e-7, 10.0, false,
                                      fmt::format("deviation at point {}", k)});
     user_model.parameters.push_back(
@@ -193,7 +194,7 @@ std::vector<Form> forms_of(std::size_t signal) {
   return forms;
 }
 
-/// Returns the traces without signals, at 20 samples per second, which resolves the knots.
+/// Returns the traces without signals and with about 20 samples per second, which resolves the knots.
 std::vector<UserModelTrace> thinned(std::vector<UserModelTrace> traces) {
   for (auto& e : traces) {
     std::vector<double> t;

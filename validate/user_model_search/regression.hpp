@@ -23,8 +23,8 @@ class UserModelRegression {
     ///< coefficient of determination; Bayesian information criterion, lower is better
     Eigen::VectorXd time_series;  ///< at all knots, event after event
   };
-  /// Regresses the input on `columns`. `numbers`: number of parameters selected for the columns, besides
-  /// their factors.
+  /// Regresses the input on `columns`. `numbers`: how many further parameters of the columns (time constant,
+  /// width, ...) were selected.
   [[nodiscard]] Result fit(const std::vector<Eigen::VectorXd>& columns, int numbers) const;
   /// Returns a time series at the knots: its mean over each knot's hat function.
   [[nodiscard]] Eigen::VectorXd at_knots(const TimeSeries& time_series) const;
@@ -40,7 +40,7 @@ class UserModelRegression {
   }
   /// Splits a time series over all knots by event: [event][knot].
   [[nodiscard]] std::vector<std::vector<double>> by_event(const Eigen::VectorXd& all) const;
-  /// Returns the inferred inputs.
+  /// Returns the traces.
   [[nodiscard]] const std::vector<UserModelTrace>& traces() const { return traces_; }
 
  private:

@@ -22,7 +22,7 @@ namespace {
 constexpr double kRegressionPriorSd = 1.0;
 constexpr std::size_t kFitted = 8;     ///< maximum number of candidates that are fitted to the records
 constexpr std::size_t kPerSignal = 3;  ///< maximum number of fitted candidates of one signal
-constexpr std::size_t kJudged = 3;     ///< number of candidates that are judged on held-out events
+constexpr std::size_t kJudged = 3;     ///< maximum number of candidates that are judged on held-out events
 
 /// Returns whether `b` is `a` with additions: every word of `a`'s family is a word of `b`'s family.
 bool within(const UserModelCandidate& a, const UserModelCandidate& b) {
@@ -51,9 +51,9 @@ std::vector<UserModelCandidate> leading(const std::vector<UserModelCandidate>& r
   }
   return chosen;
 }
-/// Returns the additional evidence that a candidate needs. A time of the record is meaningful only if all
-/// records start at the same time before the event. A candidate in proportion to the initial value is more
-/// specific than other candidates.
+/// Returns the evidence that is deducted from a candidate in the ranking. A time of the record is meaningful
+/// only if all records start at the same time before the event. An output in proportion to the initial active
+/// power or field voltage is more specific than a constant one.
 double handicap(const UserModelCandidate& user_model) {
   return (user_model.signal == "time" ? thresholds::user_models.own_time.value : 0.0) +
          (user_model.family.ends_with("in proportion") ? thresholds::user_models.in_proportion.value : 0.0);
@@ -65,7 +65,8 @@ std::string source_of(const noise::WhitenedEvents& events) {
   return "found by swingbank diagnose in " + names;
 }
 
-/// Returns the values of `from` and of the block `user_model` in a plant with this block added.
+/// Returns the values of the parameters `free` in a plant with the added block `user_model` at index `block`:
+/// those of this block from `user_model`, the others from the plant `from`.
 std::vector<double> values_in(const sim::plant::Plant& from, const sim::plant::Block& user_model, int block,
                               const std::vector<fit::FreeParameter>& free) {
   std::vector<double> values;

@@ -16,7 +16,7 @@ namespace swingbank::validate::user_model_search {
 struct UserModelFinding {
   UserModelCandidate user_model;              ///< with the fitted values
   std::shared_ptr<const sim::Effect> effect;  ///< compiled form of the model
-  hypothesis::Judgement judgement;            ///< its plant contains the model
+  hypothesis::Judgement judgement;            ///< of the plant with the model
   std::string words;                          ///< description with fitted values, units and intervals
   std::string toml;                           ///< TOML file for `swingbank add NAME --user-model FILE`
 };
@@ -48,11 +48,12 @@ struct Unexplained {
 
 /// Searches for a model of that input, torque or field voltage, whose fit has the lower reduced chi-square.
 /// Searches for a model of the other input too if the first search finds no model and the other input
-/// explains about as much. Returns no search if neither input explains most of the residual.
+/// explains about as much. Returns an empty result (kind none) if neither input explains most of the
+/// residual.
 UserModelSearch search_user_models(const Unexplained& case_, const event::Progress& report = {});
 
-/// Returns for example "None of the 31 known effects explains the records. A user-defined model does: ...";
-/// empty without an accepted model.
+/// Returns for example "None of the 31 known effects explains the records. A user-defined model does: ...".
+/// Returns an empty text if no model was accepted.
 std::string user_model_sentence(const UserModelSearch& search, std::size_t hypotheses);
 
 /// Returns the plant with the user-defined model inserted after the other blocks of the model's slot. Sets

@@ -10,10 +10,14 @@ namespace swingbank::validate::user_model_search {
 
 /// A shape of a user-defined model of time.
 struct UserModelShape {
-  enum class Kind { once, wave, sine };  ///< wave: zero phase at the start; sine: any phase
+  enum class Kind {
+    once,  ///< not periodic
+    wave,  ///< periodic, zero phase at the start
+    sine   ///< periodic, any phase
+  };
   Kind kind = Kind::once;
   std::string family;
-  /// Output [-] at time tau since the start, of a sine its envelope; b: second parameter.
+  /// Output [-] at the time tau since the start; for a sine, its envelope. b: second parameter.
   std::function<double(double tau, double b)> time_series;
   std::vector<double> grid = {};  ///< values of b; empty: no second parameter
   UserModelParameter second = {};

@@ -13,7 +13,7 @@ namespace {
 
 using Kind = UserModelShape::Kind;
 
-/// Time origin and scale of a candidate.
+/// Time origin and output scale of a candidate.
 struct Clock {
   bool triggered = false;  ///< whether time counts from the voltage deviation, else from record time 0
   bool scaled = false;  ///< whether the output is proportional to the initial active power or field voltage

@@ -5,8 +5,8 @@
 
 namespace swingbank::validate::user_model_search {
 
-/// Returns the best candidate of each shape and clock (origin and scale of its time). `level`: see
-/// trigger_level(); 0: no candidates are triggered by the voltage.
+/// Returns the best candidate of each shape and clock (time origin; output in pu or in proportion to the
+/// initial value). `level`: see trigger_level(); 0: no candidates are triggered by the voltage.
 std::vector<UserModelCandidate> timed_candidates(fit::InputKind kind, const UserModelRegression& regression,
                                                  double level);
 

@@ -20,7 +20,8 @@ double trigger_of(const event::FitEvent& e, double level) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Plays the event into the plant with the inferred input. The integration is lenient if the exact one fails.
+/// Plays the event into the plant with the inferred input. If the simulation fails, it is repeated with
+/// relaxed tolerances (event::Playing::lenient).
 playin::Response play_event(const sim::plant::PlantUnderTest& tested, const event::FitEvent& e,
                             const fit::EventState& state) {
   try {
