@@ -245,7 +245,7 @@ json step_so_far(const json& request, plant::PlantModel model, const fit::Fit& r
           {"parameters", json::array()},
           {"bands", calibrate::ResponseBands{}},
           {"held_out", request.value("held_out", std::vector<std::string>{})},
-          {"sentence", fmt::format("Stopped. The step has the best values until then, without intervals: "
+          {"sentence", fmt::format("Stopped. The step has the best values so far, without intervals: "
                                    "reduced chi-square {:.3g}.",
                                    reached.reduced_chi2())}};
 }
@@ -295,7 +295,7 @@ Step step_of_fit(const Setup& setup, const Step& from, int parent, const json& m
   s.fitted = true;
   s.bands = message.at("bands").get<calibrate::ResponseBands>();
   s.model = with_plant(from.model, message.at("plant"));
-  if (message.value("stopped", false)) return s;  // no command ends at these values
+  if (message.value("stopped", false)) return s;  // no command line gives these values
   std::string held_out;
   for (const auto& name : s.held_out) held_out += " --hold-out " + shell_word(name);
   const std::string effect = message.value("effect", "");

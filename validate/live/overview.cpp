@@ -92,7 +92,7 @@ json allowed_errors(const compare::Fitness& fitness, const compare::EventCompari
   return any ? all : json(nullptr);
 }
 
-/// Returns the result of each channel of each event.
+/// Returns the errors of each channel of each event, for the chips of the page.
 json chips(const Step& step) {
   json all = json::array();
   for (std::size_t e = 0; e < step.played->events.size(); ++e) {

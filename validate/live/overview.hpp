@@ -6,7 +6,7 @@ namespace swingbank::validate::live {
 
 /// Returns model, events and limits: everything that does not depend on a step.
 nlohmann::json setup_json(const Setup& setup, const Step& submitted);
-/// Returns a step: verdict, sliders, chips, error maps and limits.
+/// Returns a step: verdict, sliders, RMS error of each channel (chips), error maps and limits.
 nlohmann::json step_json(const Setup& setup, const Step& step, int number);
 /// Returns the curves of one event as 32-bit floats: the times [s], then the samples of each channel [unit of
 /// the channel]. A channel has measured values, modelled values, and half widths of the 95 % band of the
