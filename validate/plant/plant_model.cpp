@@ -270,7 +270,7 @@ void read_from_grid(Config& config, PlantModel& model) {
   choice.models = sim::formats::read_dyr_options(config, "grid.");
   choice.complete_records =
       sim::grid::choose(config, "grid.complete_records", sim::grid::kLackingWords, choice.complete_records,
-                        {.meaning = "completion of records that are shorter than their model"});
+                        {.meaning = "completion of .dyr records with fewer values than their model has"});
   if (config.has("grid.measured_at"))
     choice.measured_at = static_cast<int>(config.require<std::int64_t>(
         "grid.measured_at", {1.0, kMostBuses, "",

@@ -15,7 +15,7 @@
 
 namespace swingbank::validate::plant {
 
-/// Plant with its records' bases and the sources of its effects.
+/// Plant with the bases of its records, the origin of its data and the library of its effects.
 struct PlantModel {
   std::string name, origin;        ///< name of the plant; file from which it was read
   std::string sha256;              ///< of that file's bytes
