@@ -82,7 +82,7 @@ toml::table& below(toml::table& root, const std::vector<std::string>& names) {
   return *at;
 }
 
-/// Attachment text "2:SEXS:TAoverTB=0.1,…" with the fitted values.
+/// Returns the entry of `attach` "2:SEXS:TAoverTB=0.1,…" with the fitted values.
 std::string attachment(const std::string& plant, const sim::plant::Block& block) {
   std::string text = plant + ":" + std::string(block.effect->name);
   for (std::size_t i = 0; i < block.p.size(); ++i)
@@ -154,8 +154,8 @@ std::vector<std::string> channels_of(const add::Addition& added, const std::vect
   return channels;
 }
 
-/// Returns the number of whole seconds that every record contains after its event. Throws InputError if it is
-/// below kShortestWindow.
+/// Returns the number of whole seconds that every record contains after its event, at most kLongestWindow.
+/// Throws InputError if it is below kShortestWindow.
 int seconds_of(const add::Addition& added) {
   double least = kLongestWindow;
   Problems problems;

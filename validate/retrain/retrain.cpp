@@ -31,7 +31,8 @@ calibrate::Truth reference_of(const add::Addition& added, const calibrate::Truth
   return fitted;
 }
 
-/// Returns the parameters with a reference value, those that both networks estimate first.
+/// Returns the parameters with a reference value: first those that both networks estimate, then those of the
+/// effect.
 std::vector<RetrainedParameter> parameters_of(const std::array<calibrate::NetworkEstimate, 2>& estimates,
                                               const calibrate::Truth& reference) {
   std::vector<RetrainedParameter> all;
@@ -119,7 +120,7 @@ std::string sentence_of(const Retrained& r, const add::Addition& added) {
   text += fmt::format(" With the estimates of the network with {} ", added.hypothesis.name);
   if (!std::isfinite(r.rms[1])) return text + "the plant cannot be simulated.";
   return text +
-         fmt::format("the RMS error of P and Q is {}; with those of the network without it {}.",
+         fmt::format("the RMS error of P and Q is {}; with the estimates of the other network {}.",
                      power(r.rms[1]),
                      std::isfinite(r.rms[0]) ? "it is " + power(r.rms[0]) : "the plant cannot be simulated");
 }
