@@ -60,7 +60,7 @@ system changed >"$work/changed.toml"
 code=0
 "$swingbank" compare --system "$work/changed.toml" --out "$work/bad" >"$work/text" || code=$?
 ((code == 3)) || fail "exit code $code with a changed governor"
-grep -q '^Largest error at terminal gen2. Its plant' "$work/text" || fail "not named: $(tail -4 "$work/text")"
+grep -q '^The model of the plant at terminal gen2 fails in playback' "$work/text" || fail "not named: $(tail -4 "$work/text")"
 for file in report.html compare.json curves-bus5.csv curves-gen1.csv curves-gen2.csv; do
   [[ -s $work/bad/$file ]] || fail "no $file"
 done

@@ -130,7 +130,8 @@ report::Curves channel_chart(const SystemComparison& c, std::size_t terminal,
   return curves;
 }
 
-/// Returns a chip for each channel of each terminal, in the order of the error.
+/// Returns a chip for each channel of each terminal: its RMS error as a multiple of the noise. The terminals
+/// are in the order of the ranking.
 report::Chips chips(const SystemCase& s, const SystemComparison& c) {
   report::Chips all;
   for (const auto& r : c.ranking) {
@@ -253,7 +254,7 @@ std::string system_html(const SystemCase& s, const SystemComparison& c, const re
                            {c.adequacy.sentence + " " + c.culprit},
                            c.adequacy.adequate ? report::Tone::good : report::Tone::bad});
   page.add(chips(s, c));
-  page.note("! exceeds the noise limit of a bin; ✓ within it.");
+  page.note("!: the channel exceeds the noise limit in a bin of its error map; ✓: it exceeds none.");
   if (!c.ranking.empty()) {
     const std::size_t worst = c.ranking.front().terminal;
     page.subsection(s.terminals[worst].name + ", " + place_of(s, s.terminals[worst]));

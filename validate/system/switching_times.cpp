@@ -74,8 +74,9 @@ class SwitchingTimeFit {
                                        .filtered_samples;
     }
   }
-  /// Returns the sum of squared residuals of all terminals, each divided by its pre-event variance, for
-  /// switching time k at t [s].
+  /// Returns the sum of the squared residuals of V, P and Q of all terminals for switching time k at t [s].
+  /// Each residual is taken relative to its mean before the event, and divided by its standard deviation
+  /// before the event.
   double reduced_chi2(std::size_t k, double t) {
     auto switching_times = best_;
     switching_times[k] = t;

@@ -104,10 +104,10 @@ class Comparer {
   void leave_out_filtered(compare::EventComparison& e, double filter_reach) const {
     if (!(filter_reach > 0)) return;
     leave_out(e, filter_reach);
-    e.notes.push_back(
-        fmt::format("The instruments' filters smooth switchings by up to {:.0f} ms on either side; these "
-                    "samples are not compared.",
-                    1e3 * filter_reach));
+    e.notes.push_back(fmt::format(
+        "The instruments' filters smooth the steps at switchings over up to {:.0f} ms on either side; these "
+        "samples are not compared.",
+        1e3 * filter_reach));
   }
   void channels(std::size_t i, compare::EventComparison& e) {
     const Modelled& m = run_.responses[i];
@@ -255,15 +255,15 @@ void rank_terminals(const SystemCase& s, SystemComparison& c) {
     c.culprit = "All terminals are within the limits.";
   else if (failing > 0)
     c.culprit = fmt::format(
-        "Largest error at terminal {}. Its plant's model also fails in playback of its "
-        "recorded voltage ({}); correct this model first.{}",
+        "The model of the plant at terminal {} fails in playback of its recorded voltage ({}); "
+        "correct this model first.{}",
         s.terminals[first.terminal].name, first.alone_where,
         failing > 1 ? fmt::format(" {} more plants fail in playback.", failing - 1) : "");
   else
     c.culprit = fmt::format(
         "Largest error at terminal {} ({}).{}", s.terminals[first.terminal].name, first.where,
-        played > 0 ? " Every recorded plant is adequate in playback of its recorded voltage, so the error "
-                     "is in the network, the loads, the event, or a plant without a record."
+        played > 0 ? " Every plant that could be played back is adequate with its recorded voltage, so the "
+                     "error is in the network, the loads, the event, or another plant."
                    : "");
 }
 

@@ -64,7 +64,8 @@ struct SystemComparison {
   std::vector<double> switching_times;  ///< switching times used [s]
   double uncertainty = 0;               ///< half-interval of estimated switching times [s]; 0: given
   sim::Outcome outcome = sim::Outcome::stable;
-  double stopped_at = 0;  ///< on the first record's clock [s]
+  /// End of the simulation on the records' clock [s]; infinite if it reached the end of the records.
+  double stopped_at = 0;
   compare::Adequacy adequacy;
   std::vector<TerminalRank> ranking;  ///< worst first; plants that fail alone come before all others
   std::string culprit;                ///< conclusion from the ranking, as a sentence

@@ -267,7 +267,7 @@ TEST_F(SystemCompare, NamesChangedGovernorFirst_WhenAllTerminalsSwing) {
     if (c.ranking[k].alone) {
       EXPECT_TRUE(c.ranking[k].alone->adequate) << c.ranking[k].alone_where;
     }
-  EXPECT_THAT(c.culprit, HasSubstr("Largest error at terminal two. Its plant's model"));
+  EXPECT_THAT(c.culprit, HasSubstr("The model of the plant at terminal two fails in playback"));
   EXPECT_THAT(system_text(s, c), HasSubstr(c.culprit));
   const auto j = nlohmann::json::parse(system_json(s, c, system_provenance(s, "command")));
   EXPECT_EQ(j["ranking"][0]["terminal"], "two");
@@ -282,7 +282,8 @@ TEST_F(SystemCompare, GridErrorIsAttributedToNoPlant) {
   const SystemCase s = load_system(system("4:2.0:2.1\"", "4:2.0:2.1:0.01:0.02\""));
   const SystemComparison c = compare_system(s);
   EXPECT_FALSE(c.adequacy.adequate);
-  EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant is adequate in playback of its recorded voltage"));
+  EXPECT_THAT(c.culprit,
+              HasSubstr("Every plant that could be played back is adequate with its recorded voltage"));
 }
 
 TEST_F(SystemCompare, FindsSwitchingTimesBetweenSamples) {
@@ -303,7 +304,8 @@ TEST_F(SystemCompare, DetectsClockOffset) {
   EXPECT_FALSE(c.adequacy.adequate);
   EXPECT_THAT(c.terminals[3].notes, Contains(HasSubstr("not at the event's switching times")));
   // The plants are played in with the steps of their own records, so no plant is named.
-  EXPECT_THAT(c.culprit, HasSubstr("Every recorded plant is adequate in playback of its recorded voltage"));
+  EXPECT_THAT(c.culprit,
+              HasSubstr("Every plant that could be played back is adequate with its recorded voltage"));
 }
 
 TEST_F(SystemCompare, JudgesOrSubtractsSteadyStateDifference) {

@@ -18,7 +18,8 @@ struct Modelled {
 struct SystemRun {
   std::vector<Modelled> responses;  ///< one per terminal
   sim::Outcome outcome = sim::Outcome::stable;
-  double stopped_at = std::numeric_limits<double>::infinity();  ///< on the records' clock [s]
+  /// End of the simulation on the records' clock [s]; infinite if it reached the end of the records.
+  double stopped_at = std::numeric_limits<double>::infinity();
 };
 /// Oversampling factor of the simulation for instruments with memory (filters).
 constexpr int kFine = 8;
