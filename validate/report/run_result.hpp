@@ -32,12 +32,12 @@ struct SeveralRecords {
 /// Content of a run's result file.
 struct RunResult {
   std::filesystem::path file;          ///< the result file
-  std::string table, network, preset;  ///< table and network of the run; named recipe
+  std::string table, network, preset;  ///< table of the run; its network or method; its preset
   std::string title;                   ///< title of the experiment; empty if the result has none
   std::int64_t seed = 0;               ///< seed of the run
   double noise = 0;                    ///< level of measurement noise; 0: none
   int generator = 0;                   ///< bus of the excluded generator; 0: none
-  int judged = 0;  ///< bus of another generator used for evaluation, to select a recipe; 0: none
+  int judged = 0;                      ///< bus of another generator used for evaluation (--judge-on); 0: none
   std::string dataset, dataset_hash, config_hash;  ///< folder of the dataset; its hashes
   double share = 1;                                ///< share of the training rows used
   std::int64_t rows = 0, train_rows = 0, test_rows = 0, epochs = 0, best_epoch = 0;
@@ -47,8 +47,9 @@ struct RunResult {
   double mse = 0, mse_varied_only = 0, baseline_mse = 0, ratio = 0;
   ///< mean over all parameters; over the varying ones; MSE of predicting the training mean; mse /
   ///< baseline_mse
-  double seen = 0;     ///< MSE on rows of training generators or operating points; NaN: nothing was trained
-  double H_ratio = 0;  ///< ratio for H alone; NaN if H is constant
+  /// MSE on the validation rows, whose generators also have training rows; NaN: nothing was trained.
+  double seen = 0;
+  double H_ratio = 0;                       ///< ratio for H alone; NaN if H is constant
   std::vector<ParameterResult> parameters;  ///< scores of the parameters
   std::vector<Coverage> coverage;           ///< empty: the method gives no intervals
   std::vector<SeveralRecords> several;      ///< empty: no plant has three test records

@@ -20,8 +20,8 @@ double shade(double value, double good, double bad) {
 }
 constexpr double kGoodRelative = 0.01;  // error with shade 0, relative to a parameter's variance
 
-/// Returns the shade of an MSE: 0 at the floor or, without one, at the thesis's MSE; 1 at the MSE of
-/// predict-the-mean.
+/// Returns the shade of an MSE: 0 at the floor, or else at the thesis's MSE, or else at kGoodRelative times
+/// the MSE of predict-the-mean; 1 at the MSE of predict-the-mean.
 double shade_of(const Task& task, const Of& of, const Figure& f) {
   if (f.over_floor) return shade(f.mse, f.mse / *f.over_floor, f.baseline);
   std::optional<double> good = thesis_mean(task, of.method);

@@ -13,7 +13,7 @@ namespace swingbank::validate::report {
 /// Results at one number of training rows: means over seeds and over the generators common to all sizes.
 struct Size {
   double rows = 0, core_seconds = 0, mse = 0, epochs = 0;  ///< of one run, on average
-  double low = 0, high = 0;                                ///< least and largest mean of a seed
+  double low = 0, high = 0;                                ///< least and largest of the seeds' means
 };
 /// Runs of one network with several numbers of training rows.
 struct ScalingSeries {
