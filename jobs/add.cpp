@@ -239,7 +239,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
       .shows_default()
       .one_of({"cnn", "gru", "lstm"});
   line.add("--train-range", a.training.range,
-           "--retrain: the effect's parameters are drawn from 1/RANGE of to RANGE times the fitted values; "
+           "--retrain: the effect's parameters are drawn from 1/RANGE to RANGE times the fitted values; "
            "without --dataset the machine's too, about the model's values")
       .shows_default()
       .between(1.05, 100.0);

@@ -119,8 +119,9 @@ struct AnalysisOptions {
   void limit_threads() const {
     if (threads > 0) omp_set_num_threads(threads);
   }
-  /// Returns the plant model, with the user-defined models of --user-model in its library. With `to_fit`, a
-  /// calibrated model is reset to its values before the calibration. Throws InputError if a file is invalid.
+  /// Returns the plant model, with the user-defined models of --user-model in its library. With `to_fit`, the
+  /// result of an inadequate calibration is reset to the values before it. Throws InputError if a file is
+  /// invalid.
   validate::plant::PlantModel load_model(bool to_fit) {
     using namespace validate;
     plant::PlantModel loaded = plant::load_plant_model(

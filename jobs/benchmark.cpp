@@ -110,7 +110,7 @@ int run(Arguments& a) {
       problems.add(fmt::format("nominal frequencies of {:g} and {:g} Hz", model.conventions.frequency,
                                against->conventions.frequency),
                    "--against", "both models must have the same nominal frequency",
-                   "give the models for the same grid");
+                   "give two plant files with the same plant.frequency_hz");
   }
   problems.raise();
   const std::vector<record::Record> records = read_inputs(set, model, a, problems);

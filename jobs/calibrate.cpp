@@ -268,9 +268,10 @@ void declare(jobs::CommandLine& line, Arguments& a) {
   a.of.declare_fit(line);
   a.of.declare_hold_out(line);
   line.group("Fit");
-  line.add("--method", a.method,
-           "fit: maximum likelihood; curve-fit: least squares of P and Q from the model's own "
-           "values, as a baseline; both: comparison of the two")
+  line.add(
+          "--method", a.method,
+          "fit: multistart with priors (maximum a posteriori); curve-fit: least squares of P and Q from the model's own "
+          "values, as a baseline; both: comparison of the two")
       .shows_default()
       .one_of({"fit", "curve-fit", "both"});
   line.add_flag("--sparse", a.sparse,

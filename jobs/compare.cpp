@@ -135,7 +135,7 @@ void declare(jobs::CommandLine& line, Arguments& a) {
   const jobs::Option system =
       line.add("--system", a.system,
                "instead of --model and --records: a system file, a grid with an event and records of "
-               "several terminals (validate/record/README.md)");
+               "several terminals (configs/systems/README.md)");
   line.group("Expert");
   line.add(
           "--playback", a.input,

@@ -55,14 +55,14 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--fold", fold, "bus number of the generator to leave out, or all").shows_default();
   line.add("--judge-on", judged,
            "bus number of a second generator to exclude from the training and to score on, "
-           "instead of the fold's own (for the choice of recipes); all: every other generator in turn");
+           "instead of the fold's own (for the selection of settings); all: every other generator in turn");
   line.add("--processes", processes,
            "number of processes for the folds; the threads are divided among them (default: one "
            "per core; 1 if mpirun or srun started several)");
   const auto check = [&](const train::run::RunRequest& request) {
     if (!request.experiment.leave_one_out)
-      throw InputError(
-          {"this experiment has no folds", options.experiment, "see its split", "use swingbank train"});
+      throw InputError({"this experiment has no folds", options.experiment,
+                        "its split does not leave out single generators", "use swingbank train"});
     if (processes < 0)
       throw InputError({fmt::format("{} processes", processes), "--processes",
                         "at least one process is needed", "use 1 or more"});

@@ -142,7 +142,7 @@ int print_thresholds(bool json) {
 void declare(jobs::CommandLine& line, Command& c) {
   auto of_one_plant = c.of.declare(
       line,
-      "report.html, diagnosis.json and the file of a user-defined model if one is found; of a fleet for "
+      "report.html, diagnosis.json and the file of a user-defined model if one is found; with --fleet: "
       "fleet.html, fleet.json, fleet.csv and a folder per plant");
   for (const jobs::Option& option : c.of.declare_fit(line)) of_one_plant.push_back(option);
   line.group("Fleet");
@@ -165,7 +165,7 @@ void declare(jobs::CommandLine& line, Command& c) {
   line.example("swingbank diagnose --model plant.toml --records fault1.csv fault2.csv --out diagnosis");
   line.footer(std::string(thresholds::kExitCodes) +
               " Complete: no component is missing. Fit for purpose: judged with refitted parameters. "
-              "2: interrupted (Ctrl-C, SIGTERM); report and JSON hold the fits until then, without a "
+              "2: interrupted (Ctrl-C, SIGTERM); report and JSON contain the fits so far, without a "
               "verdict; a second Ctrl-C ends at once. Of a fleet: 0 all plants are complete, 3 some "
               "plant is not, 1 some plant failed, 2 stopped by a signal (run it again to continue).");
 }

@@ -113,7 +113,7 @@ void describe(const Effect& e) {
       rows.push_back({std::string(p.name), std::string(p.symbol), std::string(p.unit),
                       number(p.default_value), number(p.low), number(p.high), number(p.null_value),
                       sources.marks(p), std::string(p.meaning)});
-    fmt::print("\nparameters (null: null value, without influence; unit code: a choice)\n");
+    fmt::print("\nparameters (null: value without influence; unit code: number of a choice)\n");
     print_table(rows);
     sources.print();
   }

@@ -43,7 +43,9 @@ void declare(jobs::CommandLine& line, Command& c) {
   line.add("--faults-per-point", c.overrides.faults_per_point,
            "faults simulated for each databank point, instead of the config's")
       .positive();
-  line.add("--draws-per-shard", c.overrides.draws_per_shard, "instead of the config's").positive();
+  line.add("--draws-per-shard", c.overrides.draws_per_shard,
+           "number of events per shard, instead of the config's")
+      .positive();
   line.add("--shard-megabytes", c.overrides.shard_megabytes, "size of a shard [MB], instead of the config's");
   line.add("--channels", c.overrides.channels, "channels to record, a subset of the config's");
   line.add("--rate", c.overrides.rate, "samples per second, instead of the config's");
@@ -57,7 +59,7 @@ void declare(jobs::CommandLine& line, Command& c) {
            "time limit of a shard [s]; the run ends if one takes longer (default 600; 0: no limit)")
       .not_negative();
   line.add_flag("--dedicated-master", c.options.dedicated_master,
-                "rank 0 only assigns shards and simulates none (always from 32 ranks)");
+                "rank 0 only assigns shards and simulates none (always with 32 ranks or more)");
   const jobs::Option part =
       line.add("--part", c.part,
                "k/n: generate only the k-th of n parts of the shards; other runs generate the others");
@@ -68,7 +70,7 @@ void declare(jobs::CommandLine& line, Command& c) {
   repair.excludes(part);
   line.add_flag(
           "--trust", c.options.trust,
-          "continue without reading existing shards (0.15 s for 268 MB on one rank): only their lengths are "
+          "continue without reading existing shards (reading takes 0.15 s for 268 MB on one rank): only their lengths are "
           "checked, or the manifest alone if the dataset is complete")
       .excludes(repair);
   line.add_choice("--progress", c.mode, Progress::words(), "auto, bar, lines or none");
@@ -196,7 +198,7 @@ int run(CommandLine& line, int argc, char** argv) {
       "  mpirun -np 8 swingbank generate ... on more cores: the data are the same to the last byte.\n"
       "  swingbank generate ... --part 3/16 in a job array without MPI; with all parts generated, the bytes are the same.\n"
       "A repeated run generates the missing shards. SIGTERM, SIGUSR1 or Ctrl-C stop it with exit "
-      "code 2, run it again.");
+      "code 2; run it again to continue.");
   Command command;
   declare(line, command);
   return mpi::ranks::run_on_all_ranks(session, [&] {

@@ -1,4 +1,5 @@
-// swingbank inventory: lists the units of a PSS/E or PSLF case and the models that Swingbank does not cover.
+// swingbank inventory: lists the units of a PSS/E, PSLF or MATPOWER case and the models that Swingbank does
+// not cover.
 #include "sim/grid/inventory.hpp"
 
 #include <fmt/format.h>
@@ -152,7 +153,7 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add_flag("--json", a.json, "print everything as JSON");
   line.footer(
       "A unit is fully covered if it has a machine model and every record of it can be read; 'swingbank plant' "
-      "writes one of them as a plant file.");
+      "writes a unit as a plant file.");
   line.example("swingbank inventory --raw grid.raw --dyr grid.dyr");
   if (!line.parse(argc, argv)) return line.end();
   const Inventory inventory = sim::grid::take_inventory(a.raw, a.dyr, {a.frequency_hz, a.raw_version});

@@ -1,5 +1,5 @@
-// swingbank plant: extracts one unit of a PSS/E or PSLF case as a plant file. Reads only the unit's own
-// records.
+// swingbank plant: extracts one unit of a PSS/E, PSLF or MATPOWER case as a plant file. Reads only the unit's
+// own records.
 #include <fmt/format.h>
 
 #include <optional>

@@ -83,8 +83,8 @@ std::string strangers(const train::run::NetworkInfo& n, const std::vector<Estima
   for (const auto& e : all)
     if (unlike_training(n, e))
       text += fmt::format(
-          "warning: {} differs from the training data: its normalised input is {:.2g} rms, the largest seen "
-          "was {:.2g}; do not trust this estimate\n",
+          "warning: {} differs from the training data: the RMS of its normalised input is {:.2g}, that of the "
+          "training data at most {:.2g}; do not trust this estimate\n",
           e.record.name, e.estimate.input_rms, n.input_rms_seen);
   return text;
 }

@@ -58,8 +58,8 @@ inline double between(const validate::record::Record& r, const std::vector<doubl
 /// Returns the record shifted to the event time of the network's dataset and resampled at the dataset's rate.
 /// The records of a dataset begin in steady state. Therefore the first sample, and all samples before the
 /// record's start, are set to the median before the event. Throws InputError if no event is found, fewer than
-/// five samples precede it, the network lacks the time of its faults, a channel is missing, or the record
-/// ends too early.
+/// five samples precede it, no sample follows it, the network lacks the time of its faults, a channel is
+/// missing, or the record ends too early.
 inline NetworkInput network_input(const validate::record::Record& record,
                                   const validate::plant::PlantModel& model,
                                   const train::run::NetworkInfo& network, std::optional<double> event_s) {
@@ -78,7 +78,7 @@ inline NetworkInput network_input(const validate::record::Record& record,
     problems.add(
         fmt::format("an event at {:g} s", in.event_s), record.name,
         fmt::format("the record must contain at least {} samples before the event, and some after it", few),
-        "give a record that begins earlier");
+        "give a record that begins earlier, or one that ends later");
   if (!network.fault_start)
     problems.add("network without the time of its faults", network.run,
                  "its dataset has no time of the faults", "train it on a dataset that `generate` made");

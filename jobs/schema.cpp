@@ -39,7 +39,7 @@ constexpr Kind kKinds[] = {
     {"fleet", "many plants with their records (diagnose --fleet)", validate::fleet::fleet_schema},
     {"system", "grid, event and records of several terminals (compare --system)",
      validate::system::system_schema},
-    {"benchmark", "tests of one model against another (benchmark --tests)",
+    {"benchmark", "tests of a model against EMT records or another model (benchmark --tests)",
      validate::benchmark::tests_schema},
     {"dataset", "distribution of a dataset (databank, generate)", mpi::draw::dataset_schema},
     {"experiment", "training of networks (train, cross-validate)", experiment_schema},
@@ -82,7 +82,7 @@ int run(CommandLine& line, int argc, char** argv) {
   std::string kind;
   std::filesystem::path out;
   line.add("KIND", kind, "kind of file").one_of(kind_names());
-  line.add("--out", out, "write KIND.json into this folder, all of them without a KIND");
+  line.add("--out", out, "write KIND.json into this folder; without a KIND, one file for each kind");
   line.example("swingbank schema plant > plant.json");
   if (!line.parse(argc, argv)) return line.end();
   try {

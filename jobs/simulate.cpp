@@ -295,7 +295,7 @@ grid::CaseOptions case_options(const Options& o, const formats::DyrOptions& mode
   return all;
 }
 
-/// Writes all changes that were made to the case, one line per place.
+/// Writes all changes that were made to the case: a line for each change, and below it a line for each place.
 void write_changes(const std::filesystem::path& file, const network::Network& network) {
   std::string text;
   for (const network::Remark& remark : network.remarks) {
@@ -418,8 +418,8 @@ int run(CommandLine& line, int argc, char** argv) {
   line.group("Models");
   line.add_choice(
       "--complete-records", o.complete_records, grid::kLackingWords,
-      "complete records of the .dyr that are shorter than their model with these values and truncate "
-      "longer ones; each is listed in a warning");
+      "records of the .dyr that are shorter than their model are completed with these values, longer ones "
+      "are truncated; each change is listed in a warning");
   line.add_flag("--drop-refused", o.drop_refused,
                 "ignore records of the .dyr with inadmissible parameter values, and network equipment with a "
                 "repeated id or at a missing bus; each is listed in a warning");
@@ -472,7 +472,8 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add("--out", o.out, "file to write, .csv or .h5; may be repeated").required();
   line.add("--t-end", o.t_end, "end of the run [s]").shows_default();
   line.add("--rate", o.rate, "samples per second [1/s]").shows_default();
-  line.add("--changes", o.changes, "text file of all changes to the case, one line per change");
+  line.add("--changes", o.changes,
+           "text file that lists all changes to the case and, under each, the places that it concerns");
   line.group("Expert");
   line.add("--integrator", o.integrator,
            "reference: IDA on the unreduced equations; batch: the vectorised (SIMD) solver used by generate")

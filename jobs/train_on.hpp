@@ -18,7 +18,7 @@ inline int train_main(CommandLine& line, int argc, char** argv,
   const auto check = [&](const train::run::RunRequest& request) {
     if (request.experiment.leave_one_out)
       throw InputError({"this experiment has folds, one for each generator left out", options.experiment,
-                        "see its split", "use swingbank cross-validate"});
+                        "its split is leave-one-generator-out", "use swingbank cross-validate"});
     if (options.watch && isatty(STDERR_FILENO) == 0)
       throw InputError({"no terminal to draw on", "--watch", "standard error is a file or a pipe",
                         "leave it out, and read the curve from curves/ in the folder of --out"});

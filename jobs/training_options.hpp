@@ -44,10 +44,12 @@ struct TrainingOptions {
         "--training-rows", training_rows,
         "additional training rows: folder of the dataset generated from the experiment's training_dataset");
     line.add("--experiment", experiment, "file of configs/experiments: table, dataset, presets").required();
-    line.add("--preset", preset, "preset of the experiment: quick, nightly or thesis").shows_default();
+    line.add("--preset", preset, "preset of the experiment, for example quick, nightly or thesis")
+        .shows_default();
     line.add("--network", network, "network of the preset (default: its first)");
     line.add("--out", out, "folder for the result files");
-    line.add("--seed", seed, "seed of weights, dropout, order and split").shows_default();
+    line.add("--seed", seed, "seed of the weights, the dropout, the order of the rows and the split")
+        .shows_default();
     line.add(
             "--noise", noise,
             "relative noise level L (0.001: 0.1 %): P, Q and V in pu of machine base, theta in rad; L/20 for speed; "
@@ -65,12 +67,13 @@ struct TrainingOptions {
         .shows_default();
     line.add("--memory-limit", memory_limit, "maximum size of the time series that are kept in memory [GiB]")
         .shows_default();
-    line.add_flag("--trust", trust,
-                  "do not compare the shards with the hashes in the dataset's journal (0.1 s for 268 MB)");
+    line.add_flag(
+        "--trust", trust,
+        "do not compare the shards with the hashes in the dataset's journal (comparing takes 0.1 s for 268 MB)");
     line.add_flag("--any-maker", any_maker,
                   "accept results and checkpoints written by another software version or CPU type");
     line.add_flag("--shuffle-labels", shuffle_labels,
-                  "control run: expected MSE equals that of predicting the mean");
+                  "control run: shuffle the labels; the MSE must then equal that of predicting the mean");
     line.add_flag_off("--no-network", save_network,
                       "do not write the trained network beside its result (4 bytes a weight)");
     line.add("--print", print,

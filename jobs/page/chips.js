@@ -1,4 +1,4 @@
-// A chip for each event and channel, and the map of errors of one event.
+// Chips (labels with the RMS error of each channel of each event), and the map of errors of one event.
 import { by, digits, level, make, sign, times } from "./format.js";
 
 /** Builds the chips. `state`: setup, step, first (the submitted step), event, channel, heldOut; `choose(event, channel)`. */
@@ -7,7 +7,7 @@ export function build(state, choose) {
   by("chips").replaceChildren(
     ...setup.events.map((event, e) => {
       const unseen = step.held_out.includes(event.name);
-      const mark = unseen ? " (verification)" : state.heldOut.has(event.name) ? " (held out next)" : "";
+      const mark = unseen ? " (verification)" : state.heldOut.has(event.name) ? " (excluded from fits)" : "";
       const group = make(
         "div",
         { className: "group" + (e === state.event ? " now" : "") },
@@ -89,7 +89,7 @@ export function map(state, zoom) {
         const cell = make("button", { textContent: times(ratio) + (ratio > bound ? " ★" : "") });
         cell.style.background = shade(ratio / bound);
         const share = c.size > 0 ? `, ${digits((100 * rms) / c.size, 3)} % of ${digits(c.size)} ${c.unit}` : "";
-        cell.title = `${c.name}, ${row.window}, ${setup.bands[b]}: RMS ${digits(rms)} ${c.unit}${share}; ${times(ratio)} the noise, which may reach ${times(bound)}`;
+        cell.title = `${c.name}, ${row.window}, ${setup.bands[b]}: RMS ${digits(rms)} ${c.unit}${share}; ${times(ratio)} the noise, limit ${times(bound)}`;
         cell.addEventListener("click", () => zoom(c.channel, row.from, row.to));
         tr.append(make("td", {}, cell));
       });

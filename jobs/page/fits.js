@@ -70,7 +70,7 @@ export function result(message, event, add) {
       const about = /\((.*)\)/.exec(c.what ?? "")?.[1] ?? c.what ?? "an effect that is not in the library";
       const item = make(
         "li",
-        { title: c.chi2 ? `${c.what}: the fit leaves a reduced chi-square of ${digits(c.chi2, 3)} (1: noise)` : "" },
+        { title: c.chi2 ? `${c.what}: the fit has a reduced chi-square of ${digits(c.chi2, 3)} (1: noise)` : "" },
         make("span", { className: "share", textContent: final ? percent(c.probability) : "…" }),
         make("span", {}, c.name, make("small", { textContent: about })),
       );
