@@ -125,7 +125,7 @@ void bind_selection(py::module_& module) {
                              "Increase of chi-square if a parameter keeps its given value, by name [-].")
       .def_property_readonly(
           "tied", &tied_of,
-          "Names of parameters that explain the records equally well instead of a selected one, by name.")
+          "Parameters that explain the records equally well in place of a selected one: {selected: [others]}.")
       .def_property_readonly(
           "before", [](const WrongParameters& w) { return w.found.before; },
           "Reduced chi-square of the given plant [-].")
@@ -151,7 +151,8 @@ void bind_addition(py::module_& module) {
       .def_readonly(
           "accepted", &Addition::earns,
           "Whether the evidence is very strong (above 10) and no held-out event is worse with the effect.")
-      .def_readonly("evidence", &Addition::evidence, "2 ln(Bayes factor) over the refit without it [-].")
+      .def_readonly("evidence", &Addition::evidence,
+                    "2 ln(Bayes factor) over the refit without the effect [-].")
       .def_readonly("sentence", &Addition::sentence, "Result in words.")
       .def_readonly("parameters", &Addition::parameters,
                     "Fitted parameters, a list of FittedParameter, those of the effect first.")

@@ -69,7 +69,7 @@ std::shared_ptr<Comparison> compare_all(const std::shared_ptr<const Plant>& plan
 
 /// Returns the notebook view of a record: plots of V, P and Q.
 std::string html_of(const Record& record);
-/// Returns the notebook view of a playback: a chip and a plot for each channel.
+/// Returns the notebook view of a playback: a label with the RMS error and a plot for each channel.
 std::string html_of(const Playback& playback);
 /// Returns the notebook view of a comparison: both verdicts, and the view of each event.
 std::string html_of(const Comparison& comparison);

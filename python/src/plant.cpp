@@ -152,7 +152,7 @@ PlantClass bind_plant(py::module_& module) {
           "Reads a plant from the text of a plant file; `file` names it in messages.")
       .def_static("from_case", &from_case, py::arg("raw"), py::arg("dyr"), py::arg("bus"), py::arg("id") = "",
                   py::arg("frequency_hz") = py::none(),
-                  "Extracts the unit at bus number `bus` of a PSS/E or PSLF case.\n\n"
+                  "Extracts the unit at bus number `bus` of a PSS/E, PSLF or MATPOWER case.\n\n"
                   "`frequency_hz`: system frequency [Hz] if the network has none.")
       .def_readonly("name", &Plant::name)
       .def_readonly("origin", &Plant::origin, "File from which the plant was read.")

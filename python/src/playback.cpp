@@ -136,9 +136,10 @@ void bind_playback_class(py::module_& module) {
       .def_property_readonly("switching_times", &switching_times, "Switching times that were used [s].")
       .def_property_readonly("channels", &channels, "Compared channels: P, Q, then recorded states.")
       .def_readonly("complete", &Playback::complete,
-                    "Whether only noise remains; in all events of a Comparison.")
+                    "Whether only noise remains in this event; of a Comparison: in all its events.")
       .def_property_readonly(
-          "notes", [](const Playback& p) { return p.event.notes; }, "Notes for the reader.")
+          "notes", [](const Playback& p) { return p.event.notes; },
+          "Notes on the record and on its playback.")
       .def("__getitem__", &channel, py::arg("channel"), "Returns a channel by name: playback[\"Q\"].")
       .def("_repr_html_", [](const Playback& p) { return html_of(p); })
       .def("__repr__", [](const Playback& p) {

@@ -202,7 +202,7 @@ void bind_record(py::module_& module) {
           "Reads a record (CSV, COMTRADE, PSS/E .plb, MATLAB, HDF5), whose bases are the plant's.\n\n"
           "`columns`: names of the columns by quantity, {\"V\": \"BUS1.VPM [kV]\", \"P\": \"-PLOC\", \"t\": \"#1\"},\n"
           "as `--columns` of the commands: the unit where the file names none, - for the opposite sign,\n"
-          "#2 for the second column. Columns without a name here are recognised.\n"
+          "#2 for the second column. Columns of other quantities are recognised by their headings.\n"
           "Raises InputError with every fault of the file and its lines.")
       .def_static(
           "from_columns",
