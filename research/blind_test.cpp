@@ -219,9 +219,10 @@ int run(jobs::CommandLine& line, int argc, char** argv) {
   line.add("--out", o.out, "folder of the run: cases/, truth/, verdicts/, score.md").required();
   line.add("--make", o.make, "number of cases to make; existing ones are kept");
   line.add("--seed", o.seed, "seed of the run").shows_default();
-  line.add("--kinds", o.kinds,
-           "kinds to hide, comma-separated: kinds of the config, A+B for two at once, none, listed, odd, "
-           "pairs (default: the mixture of docs/how-to/blind-test.md)")
+  line.add(
+          "--kinds", o.kinds,
+          "kinds to hide, comma-separated: kinds of the config, A+B for two at once, none, listed, odd (unlisted), "
+          "pairs (default: the mixture of docs/how-to/blind-test.md)")
       .comma_separated();
   line.add("--size", o.size, "size of every effect, in detection limits (default: drawn)");
   line.add_flag("--diagnose", o.diagnose,

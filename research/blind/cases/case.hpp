@@ -50,7 +50,7 @@ struct BlindCase {
   std::string grid_name, plant_name;
   sim::Conventions conventions;
   sim::plant::Plant truth,
-      model;  ///< truth: with hidden effects; model: without them, parameters wrong by 10-20 %
+      model;  ///< truth: with hidden effects; model: without them, with wrong machine parameters
   std::optional<sim::plant::Plant> other;  ///< second unit in the record, whose model is correct
   std::vector<BlindEvent> events;
   std::vector<validate::record::Record> records;  ///< with noise, one per event

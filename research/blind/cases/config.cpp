@@ -22,7 +22,7 @@ bool parse(std::string_view text, double& value) {
   return read.ec == std::errc{} && read.ptr == text.data() + text.size();
 }
 
-/// Reads a path: "TARGET.PARAM=NEUTRAL:FULL".
+/// Reads a path: "TARGET.PARAM=NULL_VALUE:FULL".
 BlindPath read_path(Config& config, const std::string& key, const std::string& text) {
   const auto dot = text.find('.'), equal = text.find('=', dot), colon = text.find(':', equal);
   BlindPath path{};
@@ -33,7 +33,7 @@ BlindPath read_path(Config& config, const std::string& key, const std::string& t
         parse(text.substr(colon + 1), path.full))
       return path;
   }
-  config.problem(key, "'" + text + "'", "a path is EFFECT.PARAM=NEUTRAL:FULL",
+  config.problem(key, "'" + text + "'", "a path is EFFECT.PARAM=NULL_VALUE:FULL",
                  "write it like machine.S10=0:0.12");
   return path;
 }

@@ -29,7 +29,7 @@ struct Sawtooth : Unlisted {
   static constexpr sim::Parameter parameters[] = {
       {"A", "A", "pu", 0.01, -1.0, 1.0, 0.0, "amplitude"},
       {"f", "f", "Hz", 0.37, 0.01, 20.0, sim::kNoNullValue, "frequency"},
-      {"start", "t1", "s", 2.7, 0.0, 1e5, sim::kNoNullValue, "when it begins"}};
+      {"start", "t1", "s", 2.7, 0.0, 1e5, sim::kNoNullValue, "start time"}};
   static constexpr std::array<sim::State, 0> states{};
   static std::vector<double> switching_times(const double* p) {
     std::vector<double> all;
@@ -55,7 +55,7 @@ struct RandomWalk : Unlisted {
   static constexpr sim::Parameter parameters[] = {
       {"A", "A", "pu", 0.005, 0.0, 1.0, 0.0, "largest change between knots"},
       {"step", "dt", "s", 0.4, 0.01, 60.0, sim::kNoNullValue, "time between knots"},
-      {"start", "t1", "s", 2.4, 0.0, 1e5, sim::kNoNullValue, "when it begins"},
+      {"start", "t1", "s", 2.4, 0.0, 1e5, sim::kNoNullValue, "start time"},
       {"number", "n", "-", 5.0, 0.0, 1e6, sim::kNoNullValue, "number of the random sequence"}};
   static constexpr std::array<sim::State, 0> states{};
   static std::vector<double> switching_times(const double* p) {
