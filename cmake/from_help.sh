@@ -111,7 +111,7 @@ with_template() {
 }
 
 {
-  echo "# bash completion of swingbank $version, made from what its commands say to --help."
+  echo "# bash completion of swingbank $version, generated from its commands' --help."
   echo "_swingbank_commands='$(commands | cut -f1 | tr '\n' ' ')'"
   echo 'declare -gA _swingbank_options=('
   awk -F'\t' '
@@ -127,7 +127,7 @@ with_template() {
 quote="'"
 {
   echo '#compdef swingbank'
-  echo "# zsh completion of swingbank $version, made from what its commands say to --help."
+  echo "# zsh completion of swingbank $version, generated from its commands' --help."
   echo 'typeset -ga _swingbank_commands=('
   commands | sed "s/$quote/$quote\\\\$quote$quote/g; s/^\\([^\t]*\\)\t/\\1:/; s/.*/  $quote&$quote/"
   echo ')'
@@ -151,7 +151,7 @@ quote="'"
 } | with_template _swingbank
 
 {
-  echo "# fish completion of swingbank $version, made from what its commands say to --help."
+  echo "# fish completion of swingbank $version, generated from its commands' --help."
   awk -F'\t' '{ printf "complete -c swingbank -n \047__swingbank_words %s\047 -x -a \047%s\047\n", $1, $2 }' "$out/words"
   { commands; cat "$out/options"; } | awk -F'\t' '
     function quoted(text) { gsub(/[\\\047]/, "\\\\&", text); return "\047" text "\047" }

@@ -22,7 +22,7 @@ while (($#)); do
       if [[ $1 == --name ]]; then name=$2; else base=$2; fi
       shift
       ;;
-    -*) stop "unknown option at $1 (it is none of this script): $usage" ;;
+    -*) stop "unknown option at $1 (this script has no such option): $usage" ;;
     *)
       [[ -z $folder ]] || stop "a second folder at $1 (all packages are in one): $usage"
       folder=$1
