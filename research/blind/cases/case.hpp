@@ -19,7 +19,7 @@ namespace swingbank::research::blind::cases {
 /// Specification of one case. Everything else is drawn at random from (seed, index).
 struct BlindSpec {
   std::uint64_t seed = 0;
-  std::uint64_t index = 0;                 ///< index of the case in its run
+  std::uint64_t index = 0;                 ///< number of the case in its run, from 1
   std::vector<const BlindKind*> hidden{};  ///< hidden kinds, at most two; empty: only parameters are wrong
   double size = 0;                         ///< requested size [detection limits]; 0: drawn
 };

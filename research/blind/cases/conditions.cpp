@@ -99,8 +99,8 @@ BlindEvent draw_dip(const sim::network::Network& network, BlindDraw& draw) {
   const double length = draw.uniform(20.0, 60.0), height = draw.uniform(0.02, 0.05);
   BlindEvent event;
   event.seconds = kDipStart + length + kAfterDip;
-  event.text = fmt::format("all loads rise by {:.1f} % and fall back from {:.1f} to {:.1f} s", 100 * height,
-                           kDipStart, kDipStart + length);
+  event.text = fmt::format("from {:.1f} to {:.1f} s, all loads rise by {:.1f} % and fall back", kDipStart,
+                           kDipStart + length, 100 * height);
   move(event, network, kDipStart + length, [&](int, double t) {
     return t < kDipStart ? 0.0 : height * std::pow(std::sin(constants::pi * (t - kDipStart) / length), 2);
   });

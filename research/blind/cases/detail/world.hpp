@@ -56,8 +56,8 @@ class BlindWorld {
 /// checks accept the values; after 200 rejected draws, the values stay unchanged.
 void jitter(sim::plant::Block& block, double relative_range, BlindDraw& draw);
 
-/// Changes every parameter of a machine, up or down, by a relative amount in the range `wrong`. Repeats this
-/// until the machine is physical. Returns false if none of 10,000 draws is physical.
+/// Changes every parameter of a machine except codes, up or down, by a relative amount in the range `wrong`.
+/// Repeats this until the machine is physical. Returns false if none of 10,000 draws is physical.
 bool mislead(sim::plant::Block& machine, std::pair<double, double> wrong, BlindDraw& draw);
 
 /// Draws a fault at a bus other than the plant's.
