@@ -290,8 +290,9 @@ void add_scaling(const std::vector<RunResult>& results, const std::string& table
   to.document.add(scaling_table(series));
 }
 
-/// Adds the table of recipe selection by nested cross-validation. Its runs exclude the same generator as the
-/// run of the table. They are evaluated on another generator, on which the run of the table trains.
+/// Adds the table for the selection of network settings by nested cross-validation (runs with --judge-on).
+/// Its runs exclude the same generator as the run of the table. They are evaluated on another generator, on
+/// which the run of the table trains.
 void add_choice(const std::vector<RunResult>& results, const std::string& table, Report& to) {
   struct Sum {
     double log_ratio = 0;
@@ -308,7 +309,7 @@ void add_choice(const std::vector<RunResult>& results, const std::string& table,
   }
   if (of.empty()) return;
   Table choice{
-      "Selection of a recipe by nested cross-validation: geometric mean of MSE / predict-the-mean over the "
+      "Selection of network settings by nested cross-validation: geometric mean of MSE / predict-the-mean over the "
       "generators on which the run of the table trains. The excluded generator was not used. The smallest "
       "value of a row is selected.",
       {"excluded", "evaluated on"},
@@ -352,7 +353,7 @@ std::string remark(const std::string& table) {
   return {};
 }
 
-/// Adds everything of one table: its tasks, recipe selection, control runs and scaling.
+/// Adds everything of one table: its tasks, selection of settings, control runs and scaling.
 void add_table(const std::vector<RunResult>& results, const std::vector<Task>& tasks,
                const std::string& table, Report& to) {
   std::vector<const Task*> own;

@@ -29,8 +29,8 @@ struct ScalingSeries {
 /// Minimum number of sizes: for a power law, and for a plot.
 inline constexpr std::size_t kLeastSizes = 4, kSizesToDraw = 3;
 
-/// Series with at least kSizesToDraw sizes, from all trained runs except control runs and runs for recipe
-/// selection.
+/// Series with at least kSizesToDraw sizes, from all trained runs except control runs and runs with
+/// --judge-on.
 std::vector<ScalingSeries> scaling_series(const std::vector<RunResult>& results);
 /// Table of exponents, of the error at the thesis's number of rows, and of the rows for the thesis's error.
 Table scaling_table(const std::vector<ScalingSeries>& series);

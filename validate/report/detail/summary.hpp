@@ -8,7 +8,8 @@
 
 namespace swingbank::validate::report {
 
-/// Runs of one task. Excluded are control runs, runs for recipe selection, and runs on a share of the rows.
+/// Runs of one task. Excluded are control runs, runs with --judge-on, and runs on a share of the training
+/// rows.
 struct Task {
   std::string table, preset, dataset, dataset_hash;
   std::int64_t rows = 0;
