@@ -256,7 +256,8 @@ int run(CommandLine& line, int argc, char** argv) {
       .excludes(effects)
       .excludes(user_model);
   const jobs::Option json =
-      line.add_flag("--json", shape.json, "print as JSON: an array with one object per effect");
+      line.add_flag("--json", shape.json,
+                    "print as JSON: an array with one object per effect, or with --coverage one object");
   line.add_flag("--toml", shape.toml, "print the effect's table of a plant file, with default values")
       .excludes(json);
   line.example("swingbank effects SEXS --toml");

@@ -146,8 +146,8 @@ int make(Command c) {
     if (!c.again.empty() && !c.config.empty())
       throw InputError({"CONFIG in addition", "--again", "the card contains the config", "leave CONFIG out"});
     if ((c.config.empty() && c.again.empty()) || c.options.folder.empty())
-      throw InputError(
-          {"nothing to do", "command line", "CONFIG and --out are needed", "see swingbank generate --help"});
+      throw InputError({"nothing to do", "command line", "CONFIG (or --again) and --out are needed",
+                        "see swingbank generate --help"});
     c.options.part = part_of(c.part);
     c.options.software = std::string("swingbank ") + jobs::version() + ", commit " + jobs::commit();
     if (c.again.empty()) {

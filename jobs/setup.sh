@@ -2,8 +2,8 @@
 # Installs missing Debian packages, configures and builds.
 #   bash jobs/setup.sh [--preset NAME | --any-processor] [--tests] [--target NAME]... [--packages-only]
 #     --preset         one of CMakePresets.json (default release); the build folder is build/<preset>
-#     --any-processor  build/portable for any x86-64 processor of the last fifteen years, and the same programs for
-#                      AVX2 and AVX-512 (three builds); swingbank selects the programs for the processor
+#     --any-processor  build three times: for any x86-64 processor of the last fifteen years (build/portable), for
+#                      AVX2 and for AVX-512; swingbank selects the programs for the processor
 #     --tests          also install the packages that packages.txt marks "tests:", and build the tests
 #     --target         build only this target
 #     --packages-only  install packages, do not build

@@ -16,7 +16,7 @@ cp -r "$work/data" "$work/busy"
 (work=$work/busy && two_at_once) &
 busy=$!
 
-expect 1 "CONFIG and --out are needed" "$generate"
+expect 1 "CONFIG (or --again) and --out are needed" "$generate"
 expect 1 "--nonsense" "$generate" --nonsense
 expect 1 "there is no such file" "$generate" "$work/no.toml" --out "$work/x"
 expect 1 "a dataset of another config" "${make[@]}" --seed 2 --out "$work/data"
