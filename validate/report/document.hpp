@@ -52,7 +52,7 @@ struct Curves {
   std::vector<double> x;                                 ///< time [s], ascending
   std::vector<Series> series = {};                       ///< curves, drawn in this order
   std::optional<std::pair<double, double>> fault = {};   ///< shaded times [s]: the fault
-  std::optional<std::pair<double, double>> window = {};  ///< shaded times [s]: far above noise
+  std::optional<std::pair<double, double>> window = {};  ///< shaded times [s]: window furthest above noise
   std::optional<std::pair<double, double>> view = {};    ///< times that are shown first [s]; none: all
   double tolerance = 0;  ///< shaded band y = -tolerance ... tolerance; 0: none
   std::string id = {};   ///< target of links; empty: none
