@@ -32,7 +32,8 @@ struct ScoredCase {
   [[nodiscard]] bool nothing_missing() const { return kinds.empty() || value; }
   [[nodiscard]] bool values_named() const;  ///< whether nothing is missing and all wrong values are named
   /// Returns the verdict's probabilities, compared with the truth. An explanation is true if it names every
-  /// hidden effect and nothing else.
+  /// hidden effect and nothing else. For an unlisted disturbance, "none of these" is true. Explanations
+  /// without a missing effect count as one, which is true if nothing is missing.
   [[nodiscard]] Forecast forecast() const;
 };
 
@@ -42,7 +43,7 @@ struct ByCondition {
   Rate nothing;  ///< nothing hidden: the verdict is "adequate"
   Rate one;      ///< one listed effect: it is named first or in the set
   Rate value;    ///< wrong value: it is named
-  Rate outside;  ///< unlisted disturbance: the verdict is "none of these"
+  Rate outside;  ///< unlisted disturbance: the verdict is "unexplained"
 };
 
 struct BlindScore {
@@ -50,7 +51,8 @@ struct BlindScore {
   std::vector<std::string> unjudged;  ///< cases without a verdict
   std::map<std::string, Rate> rates;  ///< hit rates by name
   std::map<std::string, double> targets;
-  std::map<std::string, std::map<std::string, int>> confusion;  ///< cases by kind and first named effect
+  std::map<std::string, std::map<std::string, int>>
+      confusion;  ///< cases by hidden kind, and by first named effect or else verdict
   std::map<std::string, std::vector<Rate>> by_size;  ///< first_right() per size class, by recorded channels
   std::map<std::string, ByCondition> by_condition;
   Reliability reliability;
