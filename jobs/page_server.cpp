@@ -374,7 +374,7 @@ void PageServer::State::routes() {
 
 PageServer::PageServer(PageParts parts, int port) : state_(std::make_unique<State>()) {
   state_->parts = std::move(parts);
-  state_->routes();  // before the socket is created, because it sets socket options
+  state_->routes();  // sets the socket options, which must be known before the socket is created
   const char* const here = "127.0.0.1";
   if (port == 0)
     state_->port = state_->http.bind_to_any_port(here);

@@ -16,8 +16,9 @@ struct Typical {
   double h, x, least, most;
 };
 constexpr Typical kSynchronous = {4.0, 1.6, 0.6, 40.0}, kTransient = {4.0, 0.3, 0.12, 8.0};
-/// Ratios of bases that indicate another base. kFar: beyond the variation among machines. kFarForOne: few
-/// machines reach it, so it suffices if one of the values is unusual by itself.
+/// Ratios of the probable to the stated base from which the data count as being on another base. kFar: beyond
+/// the variation among machines. kFarForOne: few machines reach it, so it suffices if one of the values is
+/// unusual by itself.
 constexpr double kFar = 3.0, kFarForOne = 2.0;
 
 /// Returns the ratio of the machine's probable base to that of the data; empty if the data are plausible.
