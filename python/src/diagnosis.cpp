@@ -72,16 +72,18 @@ void bind_class(py::module_& module) {
           "\"adequate\", \"missing\", \"confusable\" or \"unexplained\".")
       .def_property_readonly(
           "side", [](const Diagnosis& d) { return std::string(side_name(d.result.side)); },
-          "Subsystem of the missing effect: \"excitation\", \"mechanical\", \"machine\" or \"measurement\".")
+          "Subsystem of the missing effect: \"excitation\", \"mechanical\", \"machine\", \"measurement\" or \"none\".")
       .def_property_readonly(
           "sentence", [](const Diagnosis& d) { return d.result.sentence; }, "Verdict in words.")
       .def_property_readonly(
           "effects", [](const Diagnosis& d) { return d.result.effects; }, "Names of the missing effects.")
       .def_property_readonly("probabilities", &probabilities,
                              "Probability of each explanation by name, most probable first.")
-      .def_property_readonly("hypotheses", &hypotheses,
-                             "Every fitted hypothesis: name, description, side, evidence, reduced_chi2,\n"
-                             "accepted, why_not; in descending order of evidence.")
+      .def_property_readonly(
+          "hypotheses", &hypotheses,
+          "Every hypothesis: name, description, side, evidence, reduced_chi2, accepted,\n"
+          "why_not; in descending order of evidence. An unpromising one was not fitted and\n"
+          "has the reduced_chi2 of the given plant.")
       .def_property_readonly(
           "torque", [](const Diagnosis& d) { return inferred(d, d.result.torque); },
           "Inferred additional torque [pu on the machine base] for each record: (times [s], values), arrays of\n"
