@@ -206,7 +206,8 @@ int run(Arguments& a, plant::PlantModel& model) {
     throw InputError({"a start from a network", "--method curve-fit",
                       "curve fitting starts from the model's own values", "give --method fit or both"});
   if (a.sparse && (a.method != "fit" || !(a.network.empty() && a.start.empty())))
-    throw InputError({"a method or start with --sparse", "--sparse", "it selects its own method and starts",
+    throw InputError({"a method or start with --sparse", "--sparse",
+                      "the selection uses its own method and starts",
                       "leave --method, --network and --start out"});
   if (a.method == "curve-fit") return run_baseline(a, model, set, truth);
   if (a.sparse) return run_sparse(a, model, set);

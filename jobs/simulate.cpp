@@ -106,11 +106,11 @@ void check_options(const Options& options, Problems& problems) {
                    "runs are written as .csv or .h5", "end the name in .csv or .h5");
   if (options.integrator == "batch" && !options.buses.empty())
     problems.add("--buses with --integrator batch", "--buses",
-                 "the batch engine works on the network reduced to the generator buses",
+                 "this integrator uses the network reduced to the generator buses",
                  "use --integrator reference");
   if (options.integrator == "batch" && options.after_switching)
     problems.add("--after-switching with --integrator batch", "--after-switching",
-                 "the batch engine records the value before a switching", "use --integrator reference");
+                 "this integrator records the value before a switching", "use --integrator reference");
 }
 
 double tolerance(const Options& o) { return o.tolerance.value_or(o.integrator == "batch" ? 1e-6 : 1e-8); }
