@@ -258,8 +258,8 @@ void read_from_grid(Config& config, PlantModel& model) {
     config.exclude(twice, std::string(twice) + " together with [grid]", "the grid's files already contain it",
                    "remove one of them");
   sim::grid::UnitChoice choice{
-      .raw =
-          config.file("grid.raw", {.meaning = "network (.raw or .m), relative to the folder of this file"}),
+      .raw = config.file(
+          "grid.raw", {.meaning = "network (.raw, .rawx, .epc or .m), relative to the folder of this file"}),
       .dyr = config.file("grid.dyr",
                          {.meaning = "dynamic models (.dyr or .dyd), relative to the folder of this file"})};
   choice.bus = static_cast<int>(

@@ -81,8 +81,10 @@ void read_grid(Config& c, SystemCase& s) {
       sim::user_models::load_user_model(user_model, library);
       s.user_models.emplace_back(user_model, sha256_of(user_model));
     });
-  s.raw = c.file("system.raw", {.meaning = "network (.raw or .m), relative to the folder of this file"});
-  s.dyr = c.file("system.dyr", {.meaning = "dynamic models, relative to the folder of this file"});
+  s.raw = c.file("system.raw",
+                 {.meaning = "network (.raw, .rawx, .epc or .m), relative to the folder of this file"});
+  s.dyr =
+      c.file("system.dyr", {.meaning = "dynamic models (.dyr or .dyd), relative to the folder of this file"});
   const auto conventions =
       c.choice("system.conventions", {"psse", "andes"},
                Range{.meaning = "psse: governors determine mechanical power; andes: torque"}) == "andes"
@@ -91,7 +93,7 @@ void read_grid(Config& c, SystemCase& s) {
   std::optional<double> hz;
   if (c.has("system.frequency_hz"))
     hz = c.require<double>("system.frequency_hz",
-                           {1.0, 1000.0, "Hz", "nominal frequency, for a network in .m"});
+                           {1.0, 1000.0, "Hz", "nominal frequency, for a network in .m or .epc"});
   const sim::formats::DyrOptions models = sim::formats::read_dyr_options(c, "system.");
   const auto attached =
                  c.optional<Texts>("system.attach", {},
