@@ -1,6 +1,6 @@
 """Takes pictures of the first screens of the gallery's reports, which lie in the current folder.
 
-  pictures.py FOLDER    writes the PNG files of this README.md, and the narrow ones of the top README.md, into FOLDER
+  pictures.py FOLDER    writes the PNG files of README.md in this folder, and the narrow ones of the top README.md, into FOLDER
 """
 import base64
 import pathlib
