@@ -144,8 +144,8 @@ def drawing(modules):
            f'<rect width="{WIDTH}" height="{height}" fill="#fff"/>',
            '<defs><marker id="a" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" orient="auto">'
            '<path d="M0 0L8 4L0 8z" fill="#666"/></marker></defs>']
-    out.append(f'<text x="{MARGIN}" y="24">An arrow leads from a module to one that it uses. One that follows from others is '
-               "left out.</text>")
+    out.append(f'<text x="{MARGIN}" y="24">An arrow leads from a module to one that it uses. Arrows that follow from other '
+               "arrows are omitted.</text>")
     out.append(f'<rect x="{MARGIN}" y="44" width="{WIDTH - 2 * MARGIN}" height="{BOX}" rx="4" fill="{COLOURS["jobs"]}" '
                'stroke="#888"/>')
     out.append(f'<text x="{WIDTH / 2:g}" y="61" text-anchor="middle">jobs: one command a file; each names the modules it '
