@@ -1,5 +1,6 @@
 #pragma once
 // Options with the same meaning in compare, calibrate, diagnose, add and serve.
+#include <fmt/format.h>
 #include <omp.h>
 
 #include <algorithm>
@@ -97,6 +98,11 @@ struct AnalysisOptions {
     for (const auto& file : user_model_files) words.insert(words.end(), {"--user-model", file});
     if (reading.component != "plant") words.insert(words.end(), {"--component", reading.component});
     if (!measured_states) words.emplace_back("--power-only");
+    const validate::event::FitEventOptions usual;
+    if (step_threshold != usual.step_threshold)
+      words.insert(words.end(), {"--step-threshold", fmt::format("{}", step_threshold)});
+    if (pre_event != usual.pre_event)
+      words.insert(words.end(), {"--pre-event", fmt::format("{}", pre_event)});
     if (!judging.accept.empty()) words.insert(words.end(), {"--accept", judging.accept});
     std::string text;
     for (const auto& word : words) text += " " + shell_word(word);

@@ -46,10 +46,10 @@ export function clear() {
   by("said").textContent = "";
   for (const id of ["inputs", "candidates", "decide"]) by(id).replaceChildren();
 }
-function inputs(message, event, unit) {
+function inputs(message, event) {
   const of = message.inputs?.find((i) => i.event === event) ?? message.inputs?.[0];
   if (!of || by("inputs").childElementCount) return;
-  const side = message.side;
+  const side = message.side, unit = `, event ${of.event + 1}`;
   const show = (name, title) => {
     if (of[name]?.t?.length > 1) small(by("inputs"), title, of[name].t, of[name].value);
   };
@@ -60,7 +60,7 @@ function inputs(message, event, unit) {
 export function result(message, event, add) {
   const final = message.type === "diagnosis";
   by("said").textContent = message.sentence;
-  inputs(message, event, `, event ${event + 1}`);
+  inputs(message, event);
   candidates = message.candidates ?? [];
   const shown = candidates.filter((c) => c.probability >= 0.01 || (!final && c.effect)).slice(0, 5);
   by("candidates").replaceChildren(

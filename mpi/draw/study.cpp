@@ -51,8 +51,8 @@ Study load_study(const DatasetConfig& config) {
     for (const sim::Effect* effect : config.other_effects())
       if (const int n = times_in(*plant, *effect); n != 1)
         problems.add(fmt::format("generator {} of vary.generators", number), config.file.string(),
-                     fmt::format("it has {} {} with parameters in [vary.effects.{}]", n == 0 ? "no" : "two",
-                                 effect->name, effect->name),
+                     fmt::format("it has {} {} with parameters in [vary.effects.{}]",
+                                 n == 0 ? "no" : std::to_string(n), effect->name, effect->name),
                      n == 0 ? fmt::format("add \"{}:{}\" to attach", plant->name, effect->name)
                             : "keep only one of them in the .dyr");
   }

@@ -28,7 +28,7 @@ json array_of(const File& file, const std::string& object, const std::string& ki
   if (kind == "i4") return array_of<std::int32_t>(file, object);
   if (kind == "i2") return array_of<std::int16_t>(file, object);
   if (kind == "u1") return array_of<std::uint8_t>(file, object);
-  file.fail("an array of another type", object);
+  file.fail_for("a shard has no array of type " + kind, "an array of another type", object);
 }
 
 json attribute_of(const File& file, const std::string& name, const std::string& kind) {

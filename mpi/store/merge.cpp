@@ -1,5 +1,7 @@
 #include "mpi/store/merge.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <map>
 
@@ -78,7 +80,9 @@ class Merge {
       if (found->second.hash != line.hash || found->second.file_hash != line.file_hash)
         throw InputError(
             {"shard " + std::to_string(line.shard) + " twice", folder.string(),
-             "it has the hash " + line.hash + ", " + into_.string() + " has " + found->second.hash,
+             fmt::format("its rows and its file have the hashes {} and {}, those in {} have {} and {}",
+                         line.hash, line.file_hash, into_.string(), found->second.hash,
+                         found->second.file_hash),
              "verify both folders with swingbank verify, and merge the valid one"});
       return;
     }

@@ -31,10 +31,11 @@ class Rows {
     Problems problems;
     const std::string where = (d.path / "dataset.json").string();
     effect_ = sim::library::compiled().find(d.machine_model);
-    if (!effect_ || (!effect_->closed_form && method != Method::from_start))
+    const bool starts = method == Method::closed_form || method == Method::refined;
+    if (!effect_ || (!effect_->closed_form && starts))
       problems.add("no closed form for " + d.machine_model, where,
                    "the closed-form estimator does not support this machine model",
-                   "leave closed-form, refined, curve-fit, floor and corrects out of the preset");
+                   "leave closed-form, refined and corrects out of the preset");
     const bool likely = method != Method::closed_form;
     if (effect_ && likely && !sim::direct::has_likelihood(*effect_))
       problems.add("no likelihood for " + d.machine_model, where,

@@ -246,11 +246,12 @@ void add_switches(const sim::plant::PlantUnderTest& tested, std::vector<Hypothes
 void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
   Hypothesis h;
   h.name = "speed-voltage";
-  h.what = "speed term in the stator voltage equations (E″ = (1 + ω) ψ″)";
   h.side = Side::machine;
   h.plant = tested.plant;
   h.conventions = tested.conventions;
   h.conventions.speed_voltage = !tested.conventions.speed_voltage;
+  h.what = fmt::format("stator voltage equations with{} the speed term (E″ = (1 + ω) ψ″)",
+                       h.conventions.speed_voltage ? "" : "out");
   h.starts = {{}};
   all.push_back(std::move(h));
 }

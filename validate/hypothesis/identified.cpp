@@ -267,6 +267,8 @@ class Identifying {
         if (other_side) {
           j.why_not = fmt::format("not fitted: even an arbitrary {} reduces the residual too little",
                                   h.input() == InputKind::torque ? "torque" : "field voltage");
+        } else if (leader && h.cost <= leader->cost) {
+          j.why_not = "not fitted: the whole plant cannot be simulated with its preliminary fit";
         } else if (leader) {
           j.behind = h.cost - leader->cost;
           j.why_not = fmt::format(

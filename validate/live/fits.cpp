@@ -50,11 +50,12 @@ event::Progress progress_of(const Emit& emit) {
   };
 }
 
-/// Returns the inferred inputs of each event.
-json inputs_json(const diagnose::Diagnosis& d) {
+/// Returns the inferred inputs of each diagnosed event, with the event's index among all records.
+json inputs_json(const Setup& setup, const diagnose::Diagnosis& d) {
   json all = json::array();
   for (std::size_t e = 0; e < d.events.size(); ++e) {
-    json one = {{"event", e}};
+    const auto at = std::ranges::find(setup.records, d.events[e].record.name, &record::Record::name);
+    json one = {{"event", at - setup.records.begin()}};
     for (const auto& [name, input] : {std::pair("torque", &d.torque), {"field", &d.field}}) {
       if (e >= input->fit.events.size()) continue;
       const auto& curve = input->of(e);
@@ -108,7 +109,7 @@ void run_diagnosis(const Setup& setup, const plant::PlantModel& model,
     emit({{"type", "preliminary"},
           {"sentence", sentence},
           {"side", side_of(d)},
-          {"inputs", inputs_json(d)},
+          {"inputs", inputs_json(setup, d)},
           {"candidates", candidates_json(d)}});
   };
   const diagnose::Diagnosis d = diagnose::diagnose(model, records, options);
@@ -120,7 +121,7 @@ void run_diagnosis(const Setup& setup, const plant::PlantModel& model,
         {"sentence", d.sentence},
         {"side", side_of(d)},
         {"effects", d.effects},
-        {"inputs", inputs_json(d)},
+        {"inputs", inputs_json(setup, d)},
         {"candidates", candidates_json(d)},
         {"now", d.would_decide.now},
         {"next", next}});

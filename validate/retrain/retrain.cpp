@@ -110,10 +110,10 @@ std::string power(double rms) {
 std::string sentence_of(const Retrained& r, const add::Addition& added) {
   std::string text = fmt::format(
       "On held-out events the network without {} estimates the {} with an error of {:.3g} "
-      "standard deviations of the drawn values; the network with it has an error of {:.3g}, smaller by a "
-      "factor of {:.3g} (midpoint of the intervals: {:.3g}).",
+      "standard deviations of the drawn values; the network with it has an error of {:.3g}, {} by a factor of "
+      "{:.3g} (midpoint of the intervals: {:.3g}).",
       added.hypothesis.name, r.truth ? "true parameters" : "fitted parameters", r.error[0], r.error[1],
-      r.fall(), r.middle);
+      r.fall() < 1 ? "larger" : "smaller", r.fall() < 1 ? 1 / r.fall() : r.fall(), r.middle);
   if (r.error[1] > r.middle)
     text +=
         " This is no better than the midpoint: train the network with more data (--train-draws, --train-epochs).";

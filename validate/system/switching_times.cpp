@@ -52,7 +52,7 @@ class SwitchingTimeFit {
         double low = middle[k] - reach, high = middle[k] + reach;
         if (k > 0) low = std::max(low, best_[k - 1] + 1e-4);
         if (k + 1 < best_.size()) high = std::min(high, best_[k + 1] - 1e-4);
-        best_[k] = golden_section([&](double at) { return reduced_chi2(k, at); }, low, high,
+        best_[k] = golden_section([&](double at) { return sum_of_squares(k, at); }, low, high,
                                   [](int step, double width) { return step < kSteps || width > kEnough; })
                        .at;
       }
@@ -77,7 +77,7 @@ class SwitchingTimeFit {
   /// Returns the sum of the squared residuals of V, P and Q of all terminals for switching time k at t [s].
   /// Each residual is taken relative to its mean before the event, and divided by its standard deviation
   /// before the event.
-  double reduced_chi2(std::size_t k, double t) {
+  double sum_of_squares(std::size_t k, double t) {
     auto switching_times = best_;
     switching_times[k] = t;
     const SystemRun run = run_system(s_, moved(s_.event, written_, switching_times));

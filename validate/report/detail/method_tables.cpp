@@ -271,7 +271,7 @@ Table several_table(const Task& task) {
 
 Table effort_table(const Task& task) {
   Table table{
-      "Computing cost: rows and epochs of a run; duration times number of threads, summed over all runs.",
+      "Computing cost: rows and epochs of a run; processor time of all runs.",
       {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]"},
       {}};
   for (const auto& method : task.methods())
@@ -283,7 +283,7 @@ Table effort_table(const Task& task) {
       const auto [epochs_low, epochs_high] = std::ranges::minmax(runs, {}, &RunResult::epochs);
       std::set<std::int64_t> seeds;
       double seconds = 0;
-      for (const auto* r : runs) seeds.insert(r->seed), seconds += r->seconds * r->threads;
+      for (const auto* r : runs) seeds.insert(r->seed), seconds += r->core_seconds;
       const bool trained = epochs_high->epochs > 0;
       const auto of = [](std::int64_t low, std::int64_t high) {
         return range(static_cast<double>(low), static_cast<double>(high));
