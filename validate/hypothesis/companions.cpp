@@ -10,11 +10,12 @@ namespace {
 
 using Eigen::Index;
 
-/// Change of a parameter for the finite difference of its column, relative to the effect's start value.
+/// Step of the finite differences. For the column of an effect: share of the way from its null values to its
+/// start values. For the column of one parameter: share of that step.
 constexpr double kChangeShare = 0.05;
 
-/// An effect and its columns: one column for the whole effect and, if it has several parameters, one for each
-/// parameter.
+/// An effect and its columns of the Jacobian: one column for the whole effect and, if it has several
+/// parameters, one for each parameter.
 struct Companion {
   std::string name;
   std::vector<Index> columns;

@@ -19,10 +19,10 @@ namespace {
 
 using playin::Output;
 
-/// Assumed noise of channels that are not recorded: 0.1 % of rated Efd and Ifd, and the resolution of shaft
-/// pickups for speed [pu].
+/// Assumed noise of channels that are not recorded [pu]: 0.1 % of the base value for Efd and Ifd, and the
+/// resolution of shaft pickups for speed.
 constexpr double kFieldNoise = 1e-3, kSpeedNoise = 2e-5;
-/// Maximum number of competing hypotheses.
+/// Maximum number of hypotheses that are compared.
 constexpr std::size_t kCompetitors = 6;
 constexpr double kFrequencyDip = 0.2;        ///< frequency drop after a remote load step [Hz]
 constexpr double kFrequencyDipWithin = 1.0;  ///< duration of the frequency drop [s]
@@ -125,7 +125,7 @@ class Separations {
                                                               std::size_t competitor) const {
     return responses_[scene * competitors_.size() + competitor];
   }
-  /// Sets the noise of the recorded channels to the RMS residual of the first hypothesis.
+  /// Sets the noise of the recorded channels to the RMS residual of the most probable hypothesis.
   void measure_noise() {
     noise_.fill(kFieldNoise);
     noise_[at(Output::speed)] = kSpeedNoise;
@@ -179,7 +179,7 @@ class Separations {
   std::vector<Scene> scenes_;
   std::vector<std::vector<fit::FreeParameter>> free_;
   std::vector<std::optional<ScaledResponse>> responses_;  ///< [scene * competitors + competitor]
-  std::vector<Eigen::MatrixXd> known_;  ///< information of the records on each hypothesis's parameters
+  std::vector<Eigen::MatrixXd> known_;  ///< information of priors and records on each hypothesis's parameters
   std::array<double, playin::kOutputs> noise_;
 };
 
@@ -231,7 +231,7 @@ Decision what_would_decide(const std::vector<Judgement>& ranked, const std::vect
     const auto size = expected_size(between, scene, outputs, set);
     if (!size) return;
     const Scene& s = between.scenes()[scene];
-    // Of the events that repeat a recorded one, only the best is kept.
+    // Of the events that repeat a recorded one, only the best is kept for each set of channels.
     const auto like = std::ranges::find_if(d.next, [&](const NextRecord& n) {
       return s.recorded >= 0 && n.what.starts_with(channel + " in an event");
     });

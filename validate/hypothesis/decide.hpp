@@ -21,8 +21,9 @@ struct Decision {
 };
 
 /// Returns the measurements that may separate the hypotheses of the credible set. The possible records are
-/// events like the recorded ones (only the best is returned), a remote load step, and a step of the voltage
-/// reference. Their channels are the recorded channels, alone or with speed, field voltage or field current.
+/// events like the recorded ones (only the best is returned for each set of channels), a remote load step,
+/// and a step of the voltage reference. Their channels are the recorded channels, alone or with speed, field
+/// voltage or field current.
 ///
 /// To compare two hypotheses, the response of one serves as the record. The other hypothesis is refitted to
 /// this record, linearised about its fit. The refit includes the information of the present records on its

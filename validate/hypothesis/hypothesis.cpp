@@ -20,7 +20,7 @@ namespace {
 using sim::Slot;
 
 constexpr std::uint64_t kGroupDraws = 32;  ///< number of draws of the parameters of a freed group
-/// Prior standard deviation of ln(value) of parameters at their null values.
+/// Prior standard deviation of ln(value) of freed parameters that are at their null values in the model.
 constexpr double kGroupPriorSd = 2.0;
 /// Prior standard deviation of ln(value) of an added effect's parameters (a factor of e).
 constexpr double kAddedPriorSd = 1.0;
@@ -88,7 +88,8 @@ void start_near_null(Hypothesis& h, int block) {
 }
 
 /// Returns the free parameters of an added effect. A parameter whose default value is its null value stays
-/// fixed, unless it is a factor: the ratio of an undocumented transformer is unknown.
+/// fixed, unless this value is positive. The parameter is then a factor, such as the unknown ratio of an
+/// undocumented transformer.
 std::vector<fit::FreeParameter> free_of_added(const sim::plant::Plant& plant, int block) {
   std::vector<fit::FreeParameter> free = fit::free_parameters(plant, block, kAddedPriorSd);
   const auto& parameters = sim::plant::block_effect(plant, block).parameters;
@@ -256,8 +257,9 @@ void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypot
   all.push_back(std::move(h));
 }
 
-/// Returns whether a parameter may be 0 in `without` but not in `with`, such as the time constant of a rate
-/// feedback. Such a parameter acts only while the group differs from its null values.
+/// Returns whether a parameter may be 0 in `without`, where a group of parameters is at its null values, but
+/// not in `with`, where it is not. Such a parameter acts only together with the group, as the time constant
+/// of a rate feedback with its gain.
 bool acts_only_beside(const sim::plant::Plant& without, const sim::plant::Plant& with,
                       sim::plant::ParameterId id) {
   const auto may_be_zero = [&](const sim::plant::Plant& plant) {

@@ -1,7 +1,7 @@
 #pragma once
 // Hypotheses on missing effects: every effect of a library in a free slot, every group of parameters at their
-// null values, every linear measurement fault, the speed-voltage convention, every switch of a converter's
-// controls. In addition, a control in a slot that holds one
+// null values, every linear instrument error, the speed-voltage convention, every switch of a converter's
+// controls. At its null value a parameter has no influence. In addition, a control in a slot that holds one
 // effect may be replaced by every other effect of this slot. The code lists no effect by name, so a new
 // effect is included automatically.
 #include <string>
@@ -17,14 +17,15 @@ enum class Side { none, mechanical, excitation, machine, measurement };
 /// Returns the name of a side in reports, for example "excitation".
 std::string_view side_name(Side side);
 
-/// A possible change of the model: an added or replaced effect, freed parameters, or a convention.
+/// A possible change of the model: an added or replaced effect, freed parameters, another position of a
+/// switch, or another convention.
 struct Hypothesis {
   std::string name;              ///< "SEXS", "GENROU:S10,S12", "EXST1 in place of SEXS"
   std::string what;              ///< "exciter SEXS (simplified excitation system)"
   std::string with = {};         ///< name of the effect added before; empty: none
   Side side = Side::none;        ///< side of the plant that it changes
   bool replaces = false;         ///< whether it replaces the control in its slot
-  int slot = -1;                 ///< slot that the effect fills (sim::Slot); -1: none
+  int slot = -1;                 ///< slot that the effect fills (sim::Slot); -1: none or shared
   sim::plant::Plant plant;       ///< the base model with the hypothesis added, at its first start values
   sim::Conventions conventions;  ///< conventions with the hypothesis
   std::vector<fit::FreeParameter> free;     ///< parameters of the hypothesis

@@ -57,8 +57,8 @@ class Identifying {
   }
 
  private:
-  /// Reduced plant on which the blocks of one side are identified; null: no effect can be missing on this
-  /// side.
+  /// Reduced plant on which the blocks of one side are identified; null: the hypotheses of this side are
+  /// skipped.
   using Reduced = Polish::Reduced;
 
   /// Prepares the reduced plants. If the base model nearly fits, it is linearised about its fit, and a side
@@ -86,7 +86,8 @@ class Identifying {
         reduced::free_input(kind, base_model_.under_test(), base_model_.events, polish_.free(),
                             base_model_.fit, base_model_.threads));
   }
-  /// Infers torque, field voltage and both. Their evidence decides whether one input suffices.
+  /// Infers the torque alone, the field voltage alone, and both together. Their evidence decides whether one
+  /// input suffices.
   void infer() {
     constexpr std::array kInputs = {reduced::Inputs{true, false}, reduced::Inputs{false, true},
                                     reduced::Inputs{true, true}};
@@ -192,7 +193,8 @@ class Identifying {
     const Identified* best = best_fitted();
     return best ? fit::penalised(*best->best()) : std::numeric_limits<double>::infinity();
   }
-  /// Linearises the leader's side about its fit. Returns false if that plant cannot be simulated.
+  /// Linearises the plant about the leader's fit, for the leader's side. Returns false if that plant cannot
+  /// be simulated.
   [[nodiscard]] bool linearise_about(const Identified& leader) {
     Reduced& side = leader.input() == InputKind::torque ? torque_ : field_;
     try {
@@ -202,7 +204,8 @@ class Identifying {
     }
     return true;
   }
-  /// Finds companions about the leader, if no effect was added before and its plant can be linearised.
+  /// Finds companions on the plant linearised about the leader's fit. Does nothing if an effect was added
+  /// before, if another hypothesis fits better, or if this plant cannot be linearised.
   void find_companions() {
     const Identified* leader = best_fitted();
     if (!leader || !base_model_.with.empty() || base_model_.stopped() || others_ < leader->cost) return;
@@ -211,8 +214,9 @@ class Identifying {
     } catch (const InputError&) {  // integration with sensitivities takes other steps and may fail
     }
   }
-  /// Fits the hypotheses that may come within reach of the best. All blocks that nearly fit are fitted too,
-  /// because a linearisation about another block predicts the cost of a block with many parameters poorly.
+  /// Fits the hypotheses that may come within reach of the best. All blocks that nearly fit
+  /// (search.nearly_fits) are fitted too, because a linearisation about another block predicts the cost of a
+  /// block with many parameters poorly.
   void fit_in_reach() {
     const Identified* leader = least();
     if (!leader) return;

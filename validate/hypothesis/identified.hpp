@@ -1,6 +1,7 @@
 #pragma once
-// Search among hypotheses that act through torque or field voltage. They are identified against the inferred
-// input (validate/reduced), without the rest of the plant, then fitted with the whole plant.
+// Search among hypotheses that act through torque or field voltage. Each is identified first: simulated
+// without the rest of the plant and fitted to the inferred input (validate/reduced). Then it is fitted with
+// the whole plant.
 #include <functional>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace swingbank::validate::hypothesis {
 /// No record may contain a breaker operation, an open circuit or a staged test.
 bool can_be_identified(const BaseModel& base_model, const Hypothesis& h);
 
-/// Sets the gain of hypotheses that were identified but not fitted: the best gain minus `behind`.
+/// Sets the gain of hypotheses that were identified but not fitted: the best gain of a fitted hypothesis
+/// minus `behind`.
 void place_unfitted(std::vector<Judgement>& all);
 
 /// Returns every hypothesis in descending order of evidence, without those that have no influence on the

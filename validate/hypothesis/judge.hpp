@@ -29,13 +29,14 @@ struct Judgement {
   double gain = 0;        ///< 2 ln(Bayes factor): fit::criterion of the base model minus that of `fit`
   double size = 0;        ///< square root of the hypothesis's reduction of chi2 [noise standard deviations]
   std::vector<HeldOut> held_out;  ///< empty: not judged
-  bool fitted = true;             ///< whether it was fitted; an unpromising one has the base model's `fit`
-  /// For a hypothesis that was identified but not fitted: its chi2 minus that of the best hypothesis.
+  bool fitted = true;             ///< whether it was fitted; if not, `fit` is that of the base model
+  /// For a hypothesis that was identified but not fitted: its cost (chi2 with priors) minus that of the best
+  /// fitted hypothesis.
   double behind = 0;
-  /// For an identified control: the effect of the machine or of an instrument with which its chi2 is lowest.
-  /// Empty: no effect reduces chi2 enough below that of the best single control.
+  /// For an identified control: the effect of the machine or of an instrument with which its cost is lowest.
+  /// Empty: no effect brings this cost far enough below that of the best single control.
   std::string companion = {};
-  double companion_gain = 0;  ///< chi2 of the best single control minus that with the companion
+  double companion_gain = 0;  ///< cost of the best single control minus that with the companion
   bool accepted = false;      ///< whether all criteria of acceptance are met
   std::string why_not;        ///< reason for rejection; empty if accepted
 };
@@ -49,8 +50,8 @@ struct Trial {
   double prior_sd;                      ///< prior standard deviation of the model's parameters
   double adequate;                      ///< reduced chi-square up to which the residual counts as noise
   double evidence = thresholds::evidence.accepted;  ///< minimum evidence of an accepted hypothesis
-  /// Noise transfer of the base model: a reduction of chi2 by a lower noise transfer is no evidence. Null:
-  /// not considered.
+  /// Voltage noise that the base model transfers: a reduction of chi2 due to a lower transfer is no evidence.
+  /// Null: not considered.
   const noise::NoiseTransfer* noise_transfer = nullptr;
 };
 
@@ -62,8 +63,9 @@ std::vector<HeldOut> hold_out(const Trial& trial, const sim::plant::PlantUnderTe
 /// `adequate` is Trial::adequate.
 std::string objection(const std::vector<HeldOut>& held_out, double evidence, double adequate);
 /// Completes the fit of `j` and accepts the hypothesis if three conditions are met: its evidence is at least
-/// Trial::evidence, no held-out event contradicts it (objection()), and the residual counts as noise.
-/// Otherwise sets `why_not`. Has no effect on a hypothesis that was not fitted.
+/// Trial::evidence, no held-out event contradicts it (objection()), and the reduced chi-square of the fit is
+/// at most Trial::adequate. Otherwise sets `why_not`. `held_out_base`: results of hold_out() for the base
+/// model. Has no effect on a hypothesis that was not fitted.
 void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>& held_out_base, Judgement& j);
 
 }  // namespace swingbank::validate::hypothesis

@@ -1,5 +1,6 @@
 #pragma once
-// Joint optimisation of a plant and its hypothesis, started from the optima of the identification.
+// Joint fit of the parameters of a plant and of a hypothesis, started from the optima of the hypothesis's
+// identification.
 #include <limits>
 #include <memory>
 #include <span>
@@ -49,7 +50,7 @@ class Polish {
   [[nodiscard]] Reduced linear_about(const Identified& h,
                                      std::span<const reduced::Change> changes = {}) const;
   /// Fits the whole plant for a few steps from the best optimum. This optimum may be far from the
-  /// linearisation point of `from`.
+  /// linearisation point of `from`, the plant on which `h` was identified.
   void briefly(Identified& h, const reduced::Reduction& from) const;
   /// Fits the whole plant from each optimum. Before the fit, the plant is linearised about the optimum and
   /// the block is identified again, in at most three rounds. These rounds follow narrow valleys of the cost
@@ -69,8 +70,8 @@ class Polish {
   /// Returns the linearisation point, with the block at the values of the optimum `found`.
   [[nodiscard]] static Point reference(const Identified& h, const reduced::Reduction& reduction,
                                        const reduced::Optimum& found);
-  /// Calls `act` at `to`. While `act` returns false or the plant cannot be simulated, `to` is moved halfway
-  /// back to `from`, at most five times. Returns whether `act` succeeded at any point.
+  /// Calls `act` at `to`, at most five times. After each call that returns false, or if the plant cannot be
+  /// simulated, `to` is moved halfway back to `from`. Returns whether a call returned true.
   template <class F>
   static bool between(const Point& from, Point& to, F act);
   [[nodiscard]] sim::plant::Plant whole(const Identified& h, const Point& point) const;

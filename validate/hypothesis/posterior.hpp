@@ -18,10 +18,10 @@ struct Explanation {
   double probability = 0;  ///< set by posterior()
 };
 
-/// Computes the probabilities and returns the explanations, most probable first. `none`: evidence of an
-/// unlisted effect minus its threshold, from the inferred inputs (torque, field voltage) and from a steady
-/// oscillation. An unlisted effect may also resemble the best listed effect. Its evidence is therefore at
-/// least that of the best listed effect minus thresholds::evidence.accepted.
+/// Adds kNoneOfThese to the explanations, computes the probabilities, and returns them, most probable first.
+/// `none`: evidence of an unlisted effect minus its threshold, from the inferred inputs (torque, field
+/// voltage) and from a steady oscillation. An unlisted effect may also resemble the best listed effect. Its
+/// evidence is therefore at least that of the best listed effect minus thresholds::evidence.accepted.
 std::vector<Explanation> posterior(std::vector<Explanation> all, double none);
 
 /// Returns the size of the credible set: the smallest number of leading explanations whose probabilities sum

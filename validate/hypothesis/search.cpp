@@ -56,8 +56,8 @@ class WholeFits {
         sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(base_model.fit.plant, f.id);
       try {
         linearise(plant, std::vector<fit::EventState>(base_model.events.size()));
-      } catch (
-          const InputError&) {  // the submitted values cannot be simulated; only the fit remains as a point
+      } catch (const InputError&) {  // the submitted values cannot be simulated; only the fit is a
+                                     // linearisation point
       }
     }
     std::vector<fit::EventState> fitted;

@@ -90,9 +90,10 @@ BaseModel after(const BaseModel& base_model, const Judgement& j);
 void bring(const BaseModel& base_model, Hypothesis& h);
 
 /// Returns the candidates for replacing a pair's first effect while its second effect stays. These are all
-/// effects of the first effect's slot, and the accepted hypotheses of `alone`. They are not fitted; `fit`
-/// contains only start values and states. The start values of the second effect are from the pair's fit. All
-/// others are from the candidate's fit in `alone` or, without such a fit, from the pair's fit.
+/// effects of the first effect's slot, and the accepted hypotheses of `alone` (single effects). They are not
+/// fitted; `fit` contains only start values and states. The start values of the second effect are from the
+/// pair's fit. All others are from the candidate's fit in `alone` or, without such a fit, from the pair's
+/// fit.
 std::vector<Judgement> exchanges(const BaseModel& base_model, const Judgement& pair,
                                  const std::vector<Judgement>& alone);
 /// Fits a candidate of exchanges() or crossed() from its start. Does nothing if the candidate has no start.
@@ -103,8 +104,8 @@ struct Cross {
   const Judgement* joins_in;  ///< the better pair, whose machine parameters are used
   std::string stays;          ///< name of the effect taken from the worse pair
   const Judgement* stays_in;  ///< the worse pair
-  /// Evidence of both pairs minus that of the pair of their other effects. This assumes that reductions of
-  /// chi2 add up.
+  /// Predicted evidence: that of both pairs minus that of the pair of their other effects. The prediction
+  /// assumes that reductions of chi2 add up.
   double expected;
 };
 /// Returns the cross with the highest expected evidence; empty if there is none. The two effects of a cross
