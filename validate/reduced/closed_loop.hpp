@@ -16,7 +16,7 @@ class ClosedLoop {
   struct Event {
     Eigen::MatrixXd
         basis;  ///< orthonormal basis of the state's columns: [value, state variable][state variable]
-    Eigen::MatrixXd plant;     ///< Jacobian by the plant's parameters, orthogonal to the basis
+    Eigen::MatrixXd plant;     ///< Jacobian with respect to the plant's parameters, orthogonal to the basis
     Eigen::VectorXd residual;  ///< residual, orthogonal to the basis
   };
   /// Returns the linearised events.

@@ -1,8 +1,7 @@
 #pragma once
-// A torque or a field voltage that is a free function of time in addition to a model. If a free torque
-// explains the records, a mechanical effect is missing. If a free field voltage explains them, an excitation
-// effect is missing. The input's time series is reported, and user-defined models are fitted to it by
-// regression.
+// A torque or a field voltage that is added to a model as a free function of time. If a free torque explains
+// the records, a mechanical effect is missing. If a free field voltage explains them, an excitation effect is
+// missing. The input's time series is reported, and user-defined models are fitted to it by regression.
 #include <memory>
 
 #include "validate/reduced/infer.hpp"

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-constexpr double kDifference = 1e-3;  ///< finite difference on an axis, for Jacobians
+constexpr double kDifference = 1e-3;  ///< step of the coordinate z for finite differences
 /// Maximum number of rounds of draws. They end earlier if the acting draws (those with a response) reach half
 /// the size of a round.
 constexpr int kRoundsOfDraws = 20;
@@ -25,7 +25,7 @@ constexpr double kRare = 0.1;
 /// kMinimumToEvolve starts.
 constexpr int kStagnant = 50;
 constexpr std::size_t kMinimumToEvolve = 8;
-/// Differential evolution. kShareOfBest: share of the starts, the best ones, toward which a start moves.
+/// Differential evolution. kShareOfBest: share of best starts, toward one of which a start moves.
 /// kShareMoved: share of the parameters that a move changes. kShortestMove: minimum of the random relative
 /// length of a move (Zhang and Sanderson 2009).
 constexpr double kShareOfBest = 0.15, kShareMoved = 0.9, kShortestMove = 0.4;
@@ -36,7 +36,8 @@ constexpr double kStartSettled = 0.02;  ///< cost reduction of a step below whic
 constexpr double kGivenUp = 1e6;        ///< damping factor at which a start is given up
 constexpr std::size_t kLastStarts = 2;  ///< number of starts that are optimised to the end
 constexpr double kSameOptimum = 1.0;    ///< costs closer than this belong to one optimum
-constexpr double kLongestAxisStep = 1.5, kLongestGain = 0.3;  ///< maximum steps on an axis and of the gain
+constexpr double kLongestAxisStep = 1.5,
+                 kLongestGain = 0.3;  ///< maximum steps of z and of the gain's parameter
 constexpr double kLengths[] = {0.1, 1.0, 10.0,
                                1000.0};  ///< factors on the damping of the steps that are tried at once
 

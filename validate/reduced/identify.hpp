@@ -1,7 +1,8 @@
 #pragma once
-// Identification of a trial from many starts at once, with the plant's parameters eliminated in closed form
-// (reduced_cost.hpp). A control block is simulated in open loop and compared with the inferred input
-// (reduce.hpp). Any other change is simulated with the whole plant (closed_loop.hpp).
+// Identification of a trial (candidate change of a plant) from many starts at once, with the plant's
+// parameters eliminated in closed form (reduced_cost.hpp). A control block is simulated in open loop and
+// compared with the inferred input (reduce.hpp). Any other change is simulated with the whole plant
+// (closed_loop.hpp).
 #include <cstdint>
 #include <vector>
 
@@ -9,7 +10,8 @@
 
 namespace swingbank::validate::reduced {
 
-/// A candidate: the plant with the block at its prior mean, and the free parameters of the block.
+/// A candidate change: the plant with the changed or added block at its prior mean, and the free parameters
+/// of the block.
 struct Trial {
   sim::plant::Plant plant;                       ///< plant with the block
   std::vector<fit::FreeParameter> free;          ///< free parameters of the block, with their priors

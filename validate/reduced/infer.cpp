@@ -193,7 +193,7 @@ class Inferring {
   static constexpr double kFirstDamping = 1e-3;
   static constexpr int kDampings = 8;
   static constexpr double kWorthAStep = 1.0;  ///< minimum gain of a step to continue [chi2]
-  static constexpr double kLongestLog = 0.5;  ///< maximum step of a logarithm
+  static constexpr double kLongestLog = 0.5;  ///< maximum step of a parameter's coordinate z
 
   [[nodiscard]] Normal normal_of(const std::vector<EventSensitivities>& sensitivities) const {
     Normal normal = without_walks(sensitivities, axes_, at_, events_);
@@ -351,7 +351,7 @@ class Inferring {
   const std::vector<fit::FreeParameter>& free_;
   Inputs inputs_;
   int threads_;
-  double intensity_ = 1.0;  ///< intensity of the inputs' walk, relative to the prior's
+  double intensity_ = 1.0;  ///< factor on the prior variance of the inputs' random walk [-]
   std::vector<fit::Axis> axes_;
   std::vector<Knots> knots_;
   sim::plant::Plant simulated_;

@@ -2,10 +2,12 @@
 // The reduced plant: the cost of an input's time series with all other unknowns eliminated. Near an inference
 // the residuals of an event are linear in the plant's parameters, the event's state, torque and field
 // voltage. A QR decomposition eliminates the event's state. The remaining cost of any time series u(t) of one
-// input, whichever block generates it, is minimised over the plant's parameters d:
+// input, whichever block generates it, is minimised over the changes d of the plant's parameters:
 //   |r + T d + L g u|^2 + |(offset + d) / prior_sd|^2
-// One parameter, d_g, also scales the effect of the input, because a machine's state follows the input at the
-// rate 1/T'do (field voltage) or 1/2H (torque). This factor stays explicit: g = exp(exponent d_g).
+// r: residuals; T, L: their derivatives with respect to parameters and input; offset: parameters minus prior
+// means. One parameter, d_g, also scales the influence of the input, because a machine's state follows the
+// input at the rate 1/T'do (field voltage) or 1/2H (torque). This factor stays explicit: g = exp(exponent
+// d_g).
 #include <Eigen/SparseCore>
 
 #include "validate/playin/open_loop.hpp"
@@ -79,8 +81,8 @@ class Reduction {
 class ReducedPlant : public ReducedCost {
  public:
   /// The input that is not `kind` stays free if the reduction contains it. `held` marks plant parameters that
-  /// are fixed because their blocks are absent; empty: none. Only the changes in `freed` are free. The
-  /// reduction must outlive this object.
+  /// are fixed because their blocks are absent; empty: none. Of the changes (add_changes()), only those with
+  /// an index in `freed` are free. The reduction must outlive this object.
   ReducedPlant(const Reduction& reduction, event::InputKind kind, const std::vector<char>& held = {},
                const std::vector<Eigen::Index>& freed = {});
 

@@ -1,7 +1,7 @@
 #pragma once
 // Cost of a change of the plant near a point at which the plant's residuals were linearised, with all other
-// unknowns eliminated. The response u of a trial is the change that its block causes. All other unknowns d
-// are linear:
+// unknowns eliminated. The response u of a trial (candidate change) is the change that its block causes. All
+// other unknowns d are linear:
 //   |r + T d + L g u|^2 + |(offset + d) / prior_sd|^2
 #include "validate/reduced/infer.hpp"
 
@@ -11,8 +11,9 @@ namespace swingbank::validate::reduced {
 ///
 /// \f[ J(u) = \min_d |r + T d + L g u|^2 + |(o + d) / \sigma|^2 \f]
 ///
-/// o: offsets of the parameters from their prior means; \f$ \sigma \f$: prior standard deviations. The states
-/// of the events are eliminated from r, T and L.
+/// r: residuals; T, L: their derivatives with respect to parameters and response; g: gain(); o: offsets of
+/// the parameters from their prior means; \f$ \sigma \f$: prior standard deviations. The states of the events
+/// are eliminated from r, T and L.
 class ReducedCost {
  public:
   virtual ~ReducedCost() = default;
@@ -53,9 +54,11 @@ class ReducedCost {
  protected:
   /// Terms of one event.
   struct Event {
-    Eigen::VectorXd r, by_gain;  ///< residual without any response; its derivative by the gain's parameter
-    Eigen::MatrixXd T;           ///< Jacobian by the eliminated parameters
-    Eigen::MatrixXd L;  ///< Jacobian by the response; empty: the response is a change of the residual
+    Eigen::VectorXd r,
+        by_gain;  ///< residual without any response; its derivative with respect to the gain's parameter
+    Eigen::MatrixXd T;  ///< Jacobian with respect to the eliminated parameters
+    Eigen::MatrixXd
+        L;  ///< Jacobian with respect to the response; empty: the response is a change of the residual
   };
   /// Sets the eliminated parameters and their priors: those of `at` that are not `held`, then `freed`.
   void eliminate(const Inference& at, Gain gain, const std::vector<char>& held,
