@@ -1,5 +1,5 @@
 #pragma once
-// The axis on which a fit moves a free parameter.
+// Coordinate z in which a fit moves a free parameter: its scaled change, or the change of its logarithm.
 #include <algorithm>
 #include <cmath>
 

@@ -146,7 +146,7 @@ class Search {
     return converged;
   }
   bool search(int iterations, int& done) {
-    // The log line of Ceres is suppressed, because the summary reports a start that cannot be evaluated.
+    // The log line of Ceres is suppressed, because Fit::failed reports a start that cannot be evaluated.
     static const bool quiet = (FLAGS_minloglevel = google::GLOG_FATAL, true);
     static_cast<void>(quiet);
     ceres::Solver::Options o;
@@ -232,8 +232,8 @@ class Search {
     return "its parameters violate a constraint";
   }
 
-  /// Returns the response at the end of the search. The integration is lenient (FitOptions::lenient) if the
-  /// fit is lenient and brief, or if the exact integration fails.
+  /// Returns the response at the end of the search. The integration of a lenient fit (FitOptions::lenient) is
+  /// lenient only if the fit is brief or if the exact integration fails.
   playin::Response final_response(std::size_t e, const sim::plant::Plant& plant, const EventState& at) const {
     if (!setting_.lenient || options_.brief) return costs_[e]->response(plant, at, setting_.lenient);
     try {

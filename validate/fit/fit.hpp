@@ -25,8 +25,8 @@ struct FreeParameter {
   double prior_sd = 0.3;       ///< relative, see above
 };
 
-/// Returns the parameters of a block that a fit may change. Excludes codes, parameters at zero or at their
-/// null value, and parameters that set a switching time of the effect.
+/// Returns the parameters of a block that a fit may change. Excludes codes (modes, bus numbers), parameters
+/// at zero or at their null value, and parameters that set a switching time of the effect.
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, int block, double prior_sd);
 /// Returns these parameters of all blocks except the instruments.
 std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, double prior_sd);
@@ -87,14 +87,15 @@ double penalised(const Fit& f);
 /// \f[ \chi^2 + \sum_i (z_i / \sigma_i)^2 + \ln\det(\Sigma H) \f]
 ///
 /// H: half the Hessian of the cost; \f$ \Sigma = \mathrm{diag}(\sigma_i^2) \f$: prior covariance.
-/// Fit::transfer_deficit is added back. Requires a fit with errors.
+/// Fit::transfer_deficit is added back. Requires a fit with standard errors.
 double criterion(const Fit& f);
 /// Returns chi2 of the data alone, with Fit::transfer_deficit added back; infinite if the fit failed.
 double data_cost(const Fit& f);
 
-/// Sets Fit::transfer_deficit of `fit`, a fit of another structure. The deficit is at least 0, so a higher
-/// noise transfer earns no credit. Every competing explanation must be corrected, including the refit with an
-/// unknown input. Does nothing if `noise_transfer` is null or the fit failed.
+/// Sets Fit::transfer_deficit of `fit`, a fit of another structure than the reference of `noise_transfer`.
+/// The deficit is at least 0, so a higher noise transfer earns no credit. Every competing explanation must be
+/// corrected, including the refit with an unknown input. Does nothing if `noise_transfer` is null or the fit
+/// failed.
 void correct_noise_transfer(const noise::NoiseTransfer* noise_transfer, const sim::Conventions& conventions,
                             Fit& fit);
 

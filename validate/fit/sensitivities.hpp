@@ -7,9 +7,9 @@
 
 namespace swingbank::validate::fit {
 
-/// Returns the unit of a parameter's axis in `information` [unit of the parameter]: one prior standard
-/// deviation. For a parameter without a prior, the unit is the magnitude of the value. If the value is 0, it
-/// is 5 % of the parameter's range, at most 1.
+/// Returns the unit of a parameter in sensitivities and in information() [unit of the parameter]: one prior
+/// standard deviation. For a parameter without a prior, the unit is the magnitude of the value. If the value
+/// is 0, it is 5 % of the parameter's range, at most 1.
 double axis_unit(const sim::plant::Plant& plant, const FreeParameter& parameter);
 
 /// Response of one event with its sensitivities at a point of the fit. They are per axis_unit() of a
@@ -47,7 +47,8 @@ struct EventSensitivities {
 EventSensitivities event_sensitivities(const sim::plant::PlantUnderTest& tested, noise::WhitenedEvent event,
                                        const EventState& state, const std::vector<FreeParameter>& free);
 
-/// Returns J'J of one event, the Fisher information on the parameters in units of their priors.
+/// Returns J'J of one event, the Fisher information on the parameters in units of axis_unit(). J:
+/// sensitivities.
 Eigen::MatrixXd information(const EventSensitivities& e);
 
 /// Returns the covariance of the scores J'r with autocovariances up to `lags` samples (Newey and West,

@@ -113,7 +113,7 @@ class Selection {
   static void require(const Fit& f) {
     if (!f.failed.empty())
       throw InputError(
-          {"the model cannot be fitted", "the model", f.failed, "correct the model, or exclude the record"});
+          {"the model cannot be fitted", "--model", f.failed, "correct the model, or exclude the record"});
   }
   /// Computes the Hessian of the cost at the full fit (all parameters free), and the location of that fit, in
   /// units of the priors.
@@ -187,8 +187,8 @@ class Selection {
   [[nodiscard]] double worth(double cost, double occam, std::size_t size) const {
     return criterion(all_) - cost - occam - options_.each * static_cast<double>(size);
   }
-  /// Returns whether the criterion stays too low even for the most promising size, after its best sets are
-  /// refitted.
+  /// Returns whether worth() stays below SparseOptions::least even for the most promising size, after its
+  /// best sets are refitted.
   [[nodiscard]] bool hopeless() {
     if (options_.least == -std::numeric_limits<double>::infinity()) return false;
     double most = -std::numeric_limits<double>::infinity();
@@ -220,10 +220,10 @@ class Selection {
   /// given values.
   ///
   /// The fit's cost exceeds that of the full fit. This excess becomes smaller if the other parameters may
-  /// move, and Refit::cost applies the reduction factor that the quadratic model predicts. For a limit the
-  /// predicted factor is too small, because a limit that is not reached has no further effect on the cost.
-  /// The estimated excess is therefore at least the predicted excess, or the fit's own excess if that is
-  /// lower.
+  /// move, and Refit::cost applies the reduction factor that the quadratic model predicts. For the parameter
+  /// of a limit the predicted factor is too small, because a limit that is not reached has no further
+  /// influence on the cost. The estimated excess is therefore at least the predicted excess, or the fit's own
+  /// excess if that is lower.
   [[nodiscard]] Refit refit(const Set& set, bool errors = false) const {
     const Prediction fixed = predict(set, kExactly), soft = predict(set);
     FitOptions o = kSearch;
@@ -311,7 +311,7 @@ class Selection {
     if (known != as_well_.end()) return known->second;
     return as_well_[set] = refit(set).cost - chosen.cost < options_.each;
   }
-  /// Returns the names of single parameters that could each replace parameter `which` of the set.
+  /// Returns the names of single parameters that could each replace parameter `which` of the set `set`.
   [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which, const Refit& chosen) const {
     std::vector<std::string> names;
     std::size_t tried = 0;

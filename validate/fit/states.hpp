@@ -1,5 +1,5 @@
 #pragma once
-// The state variables of one event: switching times, jumps of an integrated angle at the switchings,
+// The state variables of one event: switching times, phase jumps of an angle integrated from frequency,
 // operating point and initial motion.
 #include <array>
 #include <vector>
@@ -21,7 +21,7 @@ inline constexpr double kSwitchScale = 1e-3;
 /// in a reactance causes an error of about 0.1 rad in the jump.
 inline constexpr double kTurnScale = 1e-3, kTurnPrior = 100;  ///< [rad]; [kTurnScale]
 
-inline constexpr int kStates = 4;  ///< P, Q [pu], angle [rad], speed [pu]
+inline constexpr int kStates = 4;  ///< number of initial states: P, Q [pu], angle [rad], speed [pu]
 /// Kind of each state, in the order of kStates.
 inline constexpr std::array<playin::SensitivityParameter::Kind, kStates> kStateKind = {
     playin::SensitivityParameter::Kind::P, playin::SensitivityParameter::Kind::Q,

@@ -11,9 +11,9 @@ namespace swingbank::validate::reduced {
 ///
 /// \f[ J(u) = \min_d |r + T d + L g u|^2 + |(o + d) / \sigma|^2 \f]
 ///
-/// r: residuals; T, L: their derivatives with respect to parameters and response; g: gain(); o: offsets of
-/// the parameters from their prior means; \f$ \sigma \f$: prior standard deviations. The states of the events
-/// are eliminated from r, T and L.
+/// r: residuals; T, L: their derivatives with respect to parameters and response; g: factor due to the gain
+/// parameter (gain()); o: offsets of the parameters from their prior means; \f$ \sigma \f$: prior standard
+/// deviations. The states of the events are eliminated from r, T and L.
 class ReducedCost {
  public:
   virtual ~ReducedCost() = default;
