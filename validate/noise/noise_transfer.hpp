@@ -1,7 +1,7 @@
 #pragma once
 // Transfer of the played-in voltage's noise into the response of a structure. A structure (set of effects)
-// with lower noise transfer has a lower chi2, although it explains nothing. Example: a delay of a fraction of
-// a sample interpolates the current, which smooths its noise.
+// with lower noise transfer has a lower chi2, although it explains the event no better. Example: a delay of a
+// fraction of a sample interpolates the current, which smooths its noise.
 #include "validate/noise/voltage_noise.hpp"
 
 namespace swingbank::validate::noise {

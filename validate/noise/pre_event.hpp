@@ -10,8 +10,9 @@ namespace swingbank::validate::noise {
 
 /// Returns the prepared events (event::prepare_events) with their noise. The noise covariance is that of the
 /// pre-event residual of `model`, pooled over the events. It thus includes the voltage noise transferred
-/// through the machine's reactance, and the correlation of P and Q. `switching::kLeastNoise` is its floor,
-/// for speed kLeastSpeedNoise. Throws InputError if a record has no pre-event window.
+/// through the machine's reactance, and the correlation of P and Q. The square of `switching::kLeastNoise` is
+/// added to each variance; for speed, that of kLeastSpeedNoise. Throws InputError if a record has no
+/// pre-event window.
 WhitenedEvents whitened_events(const plant::PlantModel& model, std::vector<record::Record> records,
                                const event::FitEventOptions& options = {});
 

@@ -7,7 +7,7 @@ namespace swingbank::validate::noise {
 namespace {
 
 constexpr double kGuess = 2e-3;  ///< relative standard deviation of V near a switching
-/// Ratio of the variance of a reconstructed sample of V to that of a sample near a switching.
+/// Ratio of the error variance of a reconstructed sample of V to that near a switching.
 constexpr char kFiltered = 40;
 /// Lower limit of the fraction of a channel's variance that is its own noise.
 constexpr double kLeastOwnNoise = 0.01;

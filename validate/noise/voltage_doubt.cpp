@@ -18,8 +18,9 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   return of.eigenvectors().rightCols(3) * of.eigenvalues().tail(3).cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 /// Returns the variance per sample of the random walk of an angle that was integrated from f [rad^2]. A meter
-/// with a symmetric window shows the phase jump of a switching before it too. Samples beside the first
-/// switching are therefore not used, unless fewer than three, the least for an estimate, remain.
+/// with a symmetric window shows the phase jump of a switching already before the switching. The last samples
+/// before the first switching are therefore not used, unless fewer than three, the least for an estimate,
+/// remain.
 double astray(const event::FitEvent& e) {
   const record::Record& r = e.record;
   const auto all = static_cast<std::size_t>(e.start.samples);

@@ -1,5 +1,6 @@
 #pragma once
-// Residual shapes of errors of the played-in voltage, which add to the variance of an error map.
+// Time series of the residual that errors of the played-in voltage cause. They add to the variance in an
+// error map.
 #include "validate/noise/whitened_events.hpp"
 
 namespace swingbank::validate::noise {
@@ -7,8 +8,8 @@ namespace swingbank::validate::noise {
 /// Shapes of the residual that errors of the played-in voltage cause in an event's channels, one standard
 /// deviation each. The plant is linearised about the start. Two shapes are for errors of the pre-event means
 /// of V and theta. Random realisations, whose variances add up to that of the noise, represent the voltage
-/// noise transferred through the plant. Two shapes (V and theta) are for each sample next to a switching and
-/// for each reconstructed sample.
+/// noise transferred through the plant. Two shapes (V and theta) are for each sample interval that contains a
+/// switching, and for each reconstructed sample.
 struct VoltageDoubt {
   using Shape = std::vector<std::vector<double>>;  ///< [channel][sample]
   std::vector<Shape> shapes;                       ///< each one standard deviation

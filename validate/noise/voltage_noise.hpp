@@ -16,8 +16,8 @@ struct VoltageNoise {
   /// Share of this noise that the measured P and Q also contain. 1: the instrument computes P and Q from the
   /// recorded phasors; 0: each channel has independent noise.
   double carried = 0;
-  /// Share of the pre-event fluctuation of V and theta that is instrument noise. 1: the measured P and Q do
-  /// not respond to the fluctuation; 0: they respond as the model does, so the fluctuation is real.
+  /// Share of the pre-event fluctuation of V and theta that is noise of their instruments. 1: the measured P
+  /// and Q do not respond to the fluctuation; 0: they respond as the model does, so the fluctuation is real.
   double share = 0;
   Eigen::Vector3d doubt = Eigen::Vector3d::Zero();  ///< relative standard deviation of each variance
   /// Fraction of each channel's variance that is its own noise, by playin::Output. The rest is the response
@@ -31,8 +31,8 @@ struct VoltageNoise {
 };
 
 /// Estimates the noise of the voltage from its fluctuation between 3 and 10 Hz. It uses the segments before
-/// the events and later segments with no more fluctuation. Below this band the grid voltage itself varies;
-/// above it, instruments filter.
+/// the events, and later segments that do not fluctuate more than these. Below this band the grid voltage
+/// itself varies; above it, instruments filter.
 VoltageNoise voltage_noise(const std::vector<EventFit>& fits, const WhitenedEvents& events);
 
 }  // namespace swingbank::validate::noise
