@@ -39,7 +39,7 @@ plant::PlantModel component_model(plant::PlantModel model, Component component) 
   if (component != Component::machine &&
       std::ranges::none_of(model.plant.controls, [&](const auto& b) { return b.effect->slot == slot; }))
     model.warnings.push_back(
-        fmt::format("the plant file has no {0}: its output is constant", sim::slot_name(slot)));
+        fmt::format("the plant file has no {0}: the output of the {0} is constant", sim::slot_name(slot)));
   model.whole = std::move(model.plant);
   model.plant = playin::component_of(*model.whole, component);
   model.reading.component = component;

@@ -4,9 +4,9 @@
 
 namespace swingbank::validate::event {
 
-/// Returns the model of the component alone. `whole` keeps the whole plant, and `reading` requires the
-/// columns that the component needs. Warnings list the omitted blocks. Component::plant returns the model
-/// unchanged.
+/// Returns the model of the component alone. Its member `whole` keeps the whole plant, `reading` requires the
+/// columns that the component needs, and `warnings` list the omitted blocks. Component::plant returns the
+/// model unchanged.
 plant::PlantModel component_model(plant::PlantModel model, record::Component component);
 
 /// Returns the model of the whole plant, with the component's blocks taken from `model`.

@@ -40,7 +40,8 @@ std::vector<FitEvent> prepare_events(const plant::PlantModel& model,
                                      const FitEventOptions& options);
 
 /// Returns the number of samples in steady state before the first switching, as in prepare_events(), without
-/// a model. `options.mva` is required if the angle was integrated. Throws InputError if there are none.
+/// a model. `options.mva` is required if the angle was integrated. Throws InputError if there are fewer than
+/// five.
 int samples_before_event(const record::Record& record, const FitEventOptions& options);
 
 }  // namespace swingbank::validate::event

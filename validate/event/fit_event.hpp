@@ -40,9 +40,9 @@ class KeptCurve {
 /// One event, prepared for fitting.
 struct FitEvent : switching::SwitchedRecord {
   playin::OperatingPoint start = {};  ///< operating point before the event
-  /// 1 for samples that are not compared: filtered samples, lost samples, those next to a switching at an
-  /// uncertain time, where a delay of 1 ms may move a channel across the switching, and those after a
-  /// switching whose frequency was replaced (drop_peaks). Empty: all are compared.
+  /// 1 for samples that are not compared: filtered samples, lost samples, samples after a switching whose
+  /// frequency was replaced (drop_peaks), and samples next to a switching at an uncertain time, because a
+  /// delay of 1 ms may move them across the switching. Empty: all are compared.
   std::vector<char> left_out = {};
   std::vector<playin::Output> channels = {};  ///< compared channels, see playin::compared_outputs()
   KeptCurve kept = {};  ///< cached curve of played() with `switchings`, see keep_curve()

@@ -42,8 +42,8 @@ struct Playing {
   /// Relaxes the tolerance of each state according to its effect on the compared channels
   /// (playin::allowances).
   bool lenient = false;
-  /// Cache of these allowances for further playbacks of the same plant with other parameter values. Empty:
-  /// they are computed and stored here. Null: they are computed each time.
+  /// Cache of these allowances for further playbacks of the same plant with other parameter values. Empty
+  /// vector: they are computed and stored here. Null pointer: they are computed each time.
   std::vector<double>* allowance = nullptr;
   std::vector<playin::Output> sensitive =
       {};  ///< outputs with sensitivities, in addition to channels, P and Q

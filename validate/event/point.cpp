@@ -143,7 +143,7 @@ record::Record behind_section(record::Record r, const Collector& z) {
     r.Q[k] = S.imag();
   }
   r.notes.push_back(
-      fmt::format("V, angle, P and Q were transformed to the other side of the collector of {:g} + j{:g} "
+      fmt::format("V, angle, P and Q were transformed to the units' side of the collector of {:g} + j{:g} "
                   "pu on {:g} MVA.",
                   z.R, z.X, z.mva));
   return r;
@@ -187,10 +187,10 @@ sim::plant::Plant at_point(const MeasuredPoint& point) {
   double share = 1;
   for (const OtherUnit& unit : point.others) {
     if (!(unit.share > 0))
-      throw InputError({"P_MW and Q_Mvar of " + unit.model.name, point.file,
+      throw InputError({"no share of " + unit.model.name, point.file,
                         "the control of " + point.tried.name +
                             " measures at the common point, where the signals depend on all units",
-                        "give share instead"});
+                        "give share instead of P_MW and Q_Mvar"});
     share -= unit.share;
   }
   plant.beyond = to_point(point.collector, plant.mva, share);
@@ -344,7 +344,7 @@ record::Record of_tried_unit(const MeasuredPoint& point, record::Record record) 
   record::require_angle(record);
   if (record.P.size() != record.t.size() || record.Q.size() != record.t.size())
     throw InputError({"no P and Q", record.name, "the power at the common point is divided among its units",
-                      "record both there"});
+                      "record both at the common point"});
   record = behind_collector(std::move(record), point.collector);
   if (point.others.empty()) return record;
   record::Record seen = record;

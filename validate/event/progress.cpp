@@ -17,7 +17,7 @@ std::string_view phase_words(Phase phase) {
     case Phase::fitted_model:
       return "fitted model";
     case Phase::sensitivities:
-      return "sensitivity of the records";
+      return "sensitivities to the parameters";
     case Phase::effect_left_out:
       return "model without the effect";
     case Phase::effect_added:

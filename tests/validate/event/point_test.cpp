@@ -85,7 +85,7 @@ TEST_F(TwoUnits, RecoversTheTestedUnit) {
                             .others = {{.model = other, .share = 0, .P = kP, .Q = kQ}}};
   const record::Record left = of_tried_unit(point, at_point);
   expect_alone(left);
-  EXPECT_THAT(left.notes, AllOf(Contains(HasSubstr("other side of the collector")),
+  EXPECT_THAT(left.notes, AllOf(Contains(HasSubstr("units' side of the collector")),
                                 Contains(HasSubstr("power of unit 6 was subtracted; it was 30 MW"))));
 }
 

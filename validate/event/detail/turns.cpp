@@ -150,8 +150,8 @@ void drop_peaks(FitEvent& event) {
     r.theta[k] += without[k] - with_peaks[k];
   r.notes.emplace_back(
       "The frequency has peaks at the switching times: the meter spreads the phase jump over its "
-      "window. The angle is integrated from the samples outside the peaks; samples after a "
-      "switching are not compared.");
+      "window. There the frequency was extrapolated from the samples outside the peaks, and the angle was "
+      "integrated again; extrapolated samples after a switching are not compared.");
 }
 
 void find_turns(const sim::plant::PlantUnderTest& tested, FitEvent& event) {

@@ -5,7 +5,8 @@
 
 namespace swingbank::validate::event {
 
-/// Largest phase jump of a fit at a common point, and largest step of a search [rad].
+/// Largest phase jump in a fit of several units at a common measuring point, and largest step of find_turns()
+/// [rad].
 constexpr double kFarthestTurn = 0.5;
 
 /// Removes the peaks of f that phase jumps cause over the width of the meter's window. If f around a
