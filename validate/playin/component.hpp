@@ -1,7 +1,7 @@
 #pragma once
-// One component of a plant tested alone: an exciter with its blocks, a governor, or a machine. The record
-// supplies the outputs of the other components. For an exciter or a governor, a recorded machine replaces the
-// modelled one.
+// One component of a plant tested alone: an exciter with stabiliser, limiters and compensator, a governor, or
+// a machine. The record supplies the outputs of the other components. For an exciter or a governor, a
+// recorded machine replaces the modelled one.
 #include <string>
 #include <vector>
 
@@ -28,7 +28,7 @@ sim::plant::Plant put_back(const sim::plant::Plant& whole, const sim::plant::Pla
                            record::Component component);
 
 /// Returns the columns that a record of the component must have: its compared outputs, and the inputs on
-/// which its blocks depend with their present parameters. One column of each inner list suffices.
+/// which its blocks depend at their present parameter values. One column of each inner list suffices.
 std::vector<std::vector<std::string>> needed_columns(const sim::plant::PlantUnderTest& component,
                                                      record::Component of);
 

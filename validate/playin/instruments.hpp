@@ -5,9 +5,9 @@
 
 namespace swingbank::validate::playin {
 
-/// Runs simulate_playback() with instruments, whose chain must be linear. Their effect on a constant phasor
-/// is removed from the played-in voltage and from the operating point. Their filtering of a changing phasor
-/// is not removed. Instead, fits exclude the samples within the filter window around a step
+/// Runs simulate_playback() with instruments, whose chain must be linear. Their influence on a constant
+/// phasor is removed from the played-in voltage and from the operating point. Their filtering of a changing
+/// phasor is not removed. Instead, fits exclude the samples within the filter window around a step
 /// (FitEvent::filtered_samples). An angle that was integrated from a frequency is advanced by the lag of its
 /// measurement. P and Q of the response are those at the output of the instruments.
 ///
@@ -17,7 +17,7 @@ namespace swingbank::validate::playin {
 /// they are central differences of whole runs. Throws InputError as simulate_playback().
 Response observe(const PlaybackRun& run, std::span<const SensitivityParameter> parameters = {});
 
-/// Returns whether the effect of an instrument with parameters away from their null values can be removed.
+/// Returns whether the influence of an instrument with parameters away from their null values can be removed.
 /// This requires an output that is proportional to the input and deterministic (unlike noise or
 /// quantisation), and that changes the voltage by a constant factor only. A filter does not meet this
 /// requirement, so fits exclude the samples within its window around steps.

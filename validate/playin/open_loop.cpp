@@ -19,8 +19,8 @@ constexpr auto kBlockLanes = std::size_t(P8::lanes);
 
 /// ROS34PW2, a linearly implicit W-method of order 3: any approximation of the Jacobian suffices (J. Rang, L.
 /// Angermann, BIT 45 (2005) 761, table 4). It is L-stable, so a lag much faster than a step ends exactly at
-/// its input. The lower triangles by rows are the weights of earlier stages: kAlpha in the state of a stage,
-/// kGammas in its right-hand side.
+/// its input. Row i of each lower triangle contains the weights of the stages up to i: kAlpha in the state of
+/// stage i, kGammas in its right-hand side.
 constexpr int kFormulaStages = 4;
 using Stages = std::array<std::array<double, kFormulaStages>, kFormulaStages>;
 constexpr double kGamma = 0.435866521508459;

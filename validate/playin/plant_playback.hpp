@@ -57,13 +57,13 @@ struct PlaybackRun {
   OperatingPoint start = {};                 ///< operating point before the event
   const Given* given =
       nullptr;  ///< further inputs of a component (given.hpp); null: constant at their initial values
-  double angle = 0, speed = 0;              ///< offset of the first two states from equilibrium [rad], [pu]
+  double angle = 0, speed = 0;              ///< offsets of rotor angle and speed from equilibrium [rad], [pu]
   PiecewiseLinear torque = {}, field = {};  ///< added to Tm, Efd [pu]
   double tolerance = 1e-10;                 ///< error per step, relative to 1 + |state|
   std::vector<double> allowance = {};       ///< factor on the tolerance, for each state; empty: 1
   double until = 1e300;                     ///< later samples are not simulated [s]
-  double least_step = 0.0;                  ///< step length accepted whatever the error [s]; 0: none
-  int step_limit = 2'000'000;               ///< maximum number of steps
+  double least_step = 0.0;     ///< steps up to this length are accepted whatever their error [s]; 0: none
+  int step_limit = 2'000'000;  ///< maximum number of steps
   /// Outputs whose sensitivities are computed from the plant linearised along the trajectory. At a tolerance
   /// of 1e-5 they have errors of a few per cent, at a fraction of the cost. Empty: sensitivities of every
   /// output by differentiation of each step, which at limits need a tolerance of 1e-9.

@@ -13,8 +13,8 @@
 namespace swingbank::validate::playin {
 namespace {
 
-/// Step length accepted whatever the error [s]. A limit reached within a step causes a corner, which no step
-/// length resolves.
+/// Steps up to this length are accepted whatever their error [s]. A limit reached within a step causes a
+/// corner of the state's trajectory, which no step length resolves.
 constexpr double kLeastStep = 1e-7;
 constexpr int kMinSteady = 5;  ///< minimum number of samples of a mean and a standard deviation
 

@@ -1,6 +1,6 @@
 #pragma once
-// Inputs of the recorded machine: its parameters contain the values at the operating point, and its scratch
-// memory the changes since then.
+// Inputs of the recorded machine (component.hpp): its parameters contain the values at the operating point,
+// and its scratch memory the changes since then.
 #include <vector>
 
 namespace swingbank::validate::playin::recorded {
