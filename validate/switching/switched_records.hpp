@@ -12,8 +12,8 @@ constexpr double kPeakReach = 2.1;
 
 /// Options of the detection.
 struct SwitchingOptions {
-  /// Voltage step of a switching [pu]. VoltageSteps::find() searches with half of it, because a filter
-  /// spreads a step over two intervals; only the shape of the steps is determined with the whole.
+  /// Smallest voltage step of a switching [pu]. Switchings are searched with half of this value, because a
+  /// filter spreads a step over two intervals. The shape of the steps is determined with the whole value.
   double threshold = kStepThreshold;
   StepShape shape = StepShape::either;  ///< either: determined from the records (step_shape_of)
   double mva = 0;                       ///< rating of all machines whose power the records contain [MVA]
@@ -26,9 +26,10 @@ struct SwitchingOptions {
 std::vector<double> angle_seen_by_rotor(const record::Record& record, double mva);
 
 /// Returns the shape of steps as one instrument records them, from all of its records. The first step of each
-/// record decides (VoltageSteps::shape_of_first). If some are sharp and others are not, the most probable
-/// window decides (passed_filter). If no first step decides, the steps are filtered if any step is spread
-/// over several intervals; otherwise `either`. If the angle was integrated, only V is used.
+/// record decides (VoltageSteps::shape_of_first): the steps are filtered if any first step is. If some first
+/// steps are sharp and others inconclusive, the most probable window decides (passed_filter). If all are
+/// inconclusive, the steps are filtered if any step is spread over several intervals; otherwise the result is
+/// `either`. If the angle was integrated, only V is used.
 StepShape step_shape_of(const std::vector<record::Record>& records, double threshold);
 
 /// Returns the records of one instrument with their switching times. The voltage at filtered samples is not

@@ -20,8 +20,8 @@ bool passed_filter(const std::vector<SwitchedRecord>& events);
 /// single window for all events. Finds the switching times that the user has not given. Marks the samples
 /// within this window as filtered, and adds the reconstructed voltage to the events' clean records, so that
 /// every segment between switchings has a voltage. If the instrument's window is none of the known ones, a
-/// larger roughness compensates for the difference. Returns the window; its half-width is 0 if nothing is
-/// filtered.
+/// larger roughness (ReconstructedCurve) compensates for the difference. Returns the window; its half-width
+/// is 0 if nothing is filtered.
 FilterWindow reconstruct_voltage(std::vector<SwitchedRecord>& events);
 
 }  // namespace swingbank::validate::switching
