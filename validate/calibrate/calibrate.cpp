@@ -232,7 +232,7 @@ class Calibrating {
     for (const std::size_t e : fitted_) o.start.push_back(fits[e].state);
     c_.fit = fit::fit(model_.under_test(), seen_, free_, o);
     if (!c_.fit.failed.empty())
-      throw InputError({"the fitted model cannot run", model_.origin, c_.fit.failed, "fix parameters"});
+      throw InputError({"the fitted model cannot run", model_.origin, c_.fit.failed, "fix some with --fix"});
     before_ = each_alone(model_.plant, event::Phase::model_as_it_is);
   }
   /// Returns the sensitivities of the fitted events.
@@ -455,7 +455,8 @@ class Calibrating {
     for (std::size_t k = 0; k < moves.size() && k < 3; ++k)
       if (moves[k].first > thresholds::parameters.moved) most += (most.empty() ? "" : ", ") + moves[k].second;
     return "Structure adequate, parameter values were wrong: after calibration " + residual_text(c_.events) +
-           " (" + left + ")." + (most.empty() ? "" : " Largest changes, in standard errors: " + most + ".");
+           " (" + left + ")." +
+           (most.empty() ? "" : " Largest changes relative to the standard error: " + most + ".");
   }
   std::string poor_structure(const std::string& left) const {
     const EventScore* worst = &c_.events.front();

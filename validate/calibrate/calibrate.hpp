@@ -26,9 +26,11 @@ struct CalibrateOptions {
   std::vector<std::string> held_out;  ///< record names (or their numbers, from 1) left out of the fit
   std::vector<std::string> fixed;     ///< names of fixed parameters, e.g. "GENROU.Xl"
   std::vector<GivenStart> given;      ///< starts in addition to the model's own values and the draws
-  bool only_given = false;            ///< whether to use only `given` and draws, without further events
+  bool only_given =
+      false;  ///< if true: no start at the model's own values or closed form; no simulation of further events
   std::vector<fit::FreeParameter> free = {};  ///< free parameters with priors; empty: chosen_parameters()
-  /// Smallest limit of the reduced chi-square. It allows for interpolation errors of the played-in voltage.
+  /// Lower bound of the limit of the reduced chi-square. It allows for interpolation errors of the played-in
+  /// voltage.
   double adequate = thresholds::adequacy.reduced_chi2;
   event::FitEventOptions events = {};  ///< preparation of the records
   event::Progress progress = {};       ///< recipient of progress messages; empty: none
@@ -66,7 +68,8 @@ struct UnidentifiedCombination {
   /// Component of the combination along one parameter.
   struct Member {
     int parameter;  ///< index into Calibration::parameters
-    double change;  ///< change for one standard deviation along the combination [unit of the parameter]
+    double change;  ///< change for one posterior standard deviation along the combination [unit of the
+                    ///< parameter]
   };
   std::vector<Member> members;  ///< the largest first
   double decided = 0;           ///< share of the posterior precision that comes from the records
@@ -85,8 +88,9 @@ struct CalibratedParameter {
   fit::FittedParameter fit;    ///< error and interval include the widening for coloured residuals
   double curvature_error = 0;  ///< standard error from the curvature alone, for white noise [unit]
   double shift = 0;            ///< correction applied for noise of the played-in voltage [unit]
-  int best_candidate = -1;     ///< index of the candidate that reduces the error most; -1: none by a fifth
-  double narrowed = 1;         ///< standard error with that candidate / without it
+  int best_candidate =
+      -1;  ///< index of the candidate that reduces the error most; -1: none reduces it by a fifth
+  double narrowed = 1;  ///< standard error with that candidate / without it
 };
 
 /// Verdict of a calibration.

@@ -240,8 +240,9 @@ class CurveFitting {
     fit_.rms_before = std::sqrt(squares[0] / values);
     fit_.rms_after = std::sqrt(squares[1] / values);
     fit_.sentence = fmt::format(
-        "Curve fitting {} after {} iterations: reduced chi-square {:.3g} -> {:.3g}, noise limit {:.3g}.",
-        fit_.converged ? "ended" : "did not end", fit_.iterations, fit_.before, fit_.after, fit_.limit);
+        "The curve fit {} in {} iterations: reduced chi-square {:.3g} -> {:.3g}, noise limit {:.3g}.",
+        fit_.converged ? "converged" : "did not converge", fit_.iterations, fit_.before, fit_.after,
+        fit_.limit);
   }
 
   const CurveFitOptions& options_;

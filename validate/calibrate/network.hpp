@@ -11,7 +11,8 @@ namespace swingbank::validate::calibrate {
 
 /// Content of an estimate file.
 struct NetworkEstimate {
-  std::string file, network, kind, machine, dataset;  ///< file: estimate (JSON); network: its weights
+  std::string file, network, kind, machine,
+      dataset;  ///< estimate file (JSON); file, kind, machine model and training dataset of the network
   /// Estimate of one parameter.
   struct Parameter {
     std::string name, effect, unit;  ///< name in the dataset ("H", "SEXS.K"); effect ("GENROU"); unit ("s")

@@ -13,9 +13,9 @@ namespace swingbank::validate::calibrate {
 using ResponseBands = std::vector<std::map<std::string, std::vector<double>>>;
 
 /// Computes the bands of all events at the fitted model. The covariance of the parameters is the inverse of
-/// the curvature of the events that are not held out, plus the priors of `free`. If the residuals exceed
-/// noise, the bands are wider by the square root of the reduced chi-square. Throws InputError if playback of
-/// a record fails.
+/// the curvature of the events that are not held out, plus the priors of `free`. If the reduced chi-square of
+/// these events exceeds 1, the bands are wider by its square root. Throws InputError if playback of a record
+/// fails.
 ResponseBands response_bands(const plant::PlantModel& fitted, const std::vector<record::Record>& records,
                              const std::vector<fit::FreeParameter>& free, const CalibrateOptions& options);
 

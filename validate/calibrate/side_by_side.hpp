@@ -50,7 +50,7 @@ struct Distance {
   int intervals = 0,
       covering = 0;     ///< parameters with a finite 95 % interval; intervals that contain the truth
   double relative = 0;  ///< RMS of (value - truth) / |truth|
-  double mse = 0;       ///< mean of (value - truth)^2 in raw units, as in the thesis
+  double mse = 0;       ///< mean of (value - truth)^2, each in the parameter's own unit
 };
 /// Returns the errors of a method against the true values.
 Distance distance(const Way& way, const Truth& truth);

@@ -20,7 +20,7 @@ struct TriedEvent {
 };
 /// Simulates further events by playback of synthetic voltage signals: a frequency event, a deep fault, a
 /// lasting voltage step and a load rejection. If Ifd was not recorded, also evaluates the recorded events as
-/// if speed, Efd and Ifd had been measured. Returns an empty list for component records and staged tests,
+/// if speed, Efd and Ifd had been measured too. Returns an empty list for component records and staged tests,
 /// because their additional inputs (Vref, Pref) are unknown. `voltage` is the noise of the played-in voltage.
 std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
                                    const noise::WhitenedEvents& events,

@@ -17,7 +17,8 @@ struct VoltagePull {
 
 /// Computes the bias from three responses at the operating point of the first event: to an impulse of V, to
 /// an impulse of theta, and to a step of an integrated theta. Samples of white noise are independent, so
-/// their contributions add up. `whitening` is the plant through which the events' residuals were whitened.
+/// their contributions add up. `whitening`: plant of the innovations filter with which the events' residuals
+/// were whitened.
 VoltagePull voltage_pull(const sim::plant::PlantUnderTest& tested,
                          const sim::plant::PlantUnderTest& whitening, const noise::WhitenedEvents& events,
                          const noise::VoltageNoise& voltage, const std::vector<fit::FreeParameter>& free);
