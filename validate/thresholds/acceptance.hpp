@@ -37,7 +37,7 @@ struct Acceptance {
 /// Names of the presets; the first is the default.
 std::vector<std::string> acceptance_presets();
 /// Returns the preset `what` (the default if empty) or the limits of the file of that name. Throws InputError
-/// with every fault of the file, or if neither a preset nor a file has this name.
+/// with every problem of the file, or if neither a preset nor a file has this name.
 Acceptance read_acceptance(const std::string& what);
 /// Reads limits from a file's text; `name` is the file name in messages.
 Acceptance parse_acceptance(const std::string& text, const std::string& name);

@@ -1,15 +1,16 @@
 #pragma once
 // Criteria by which four commands decide whether a model is adequate. The decision sets their exit codes.
 // Command compare plays the records into the given model without a refit, so the effect of a wrong parameter
-// counts. Every bin of the error maps has its own limit, and one bin beyond its limit is enough. Commands
-// calibrate and add refit the parameters, then test the reduced chi-square of each event, held out or not.
-// The limit allows for the event's coloured noise and short pre-event window. Local errors may average out,
-// because the next question is which parameter is wrong, not at which second. Command diagnose refits the
-// parameters and decides whether to name an effect. Besides chi2 over all events it tests slow components and
-// steady oscillations of the residual, and the evidence of inputs that are free in time. Effects of 40 times
-// the noise have been hidden in a reduced chi-square of 1.07. A named effect must have sufficient evidence.
-// The criteria differ by the refit and by the consequence of a rejection, so they are not unified. Every
-// verdict reports the criterion that decided it; all limits are in thresholds.hpp.
+// counts. Every bin of the error maps has its own limit, and one bin beyond its limit suffices to reject the
+// model. Commands calibrate and add refit the parameters, then test the reduced chi-square of each event,
+// held out or not. The limit allows for the event's coloured noise and short pre-event window. Errors at
+// single times may average out, because the next question is which parameter is wrong, not when the error
+// occurs. Command diagnose refits the parameters and decides whether to name an effect. Besides chi2 over all
+// events it tests slow components and steady oscillations of the residual, and the evidence of inputs that
+// are free in time. Effects of 40 times the noise have been hidden in a reduced chi-square of 1.07. A named
+// effect must have sufficient evidence. The criteria differ by the refit and by the consequence of a
+// rejection, so they are not unified. Every verdict reports the criterion that decided it; all limits are in
+// thresholds.hpp.
 #include <string>
 #include <string_view>
 
@@ -31,7 +32,7 @@ enum class Criterion {
 /// Name and description of a criterion for reports.
 struct CriterionRecord {
   std::string_view name;            ///< name in JSON
-  std::string_view asks;            ///< description for readers
+  std::string_view asks;            ///< description of the measured quantity for reports
   std::string_view unit;            ///< unit of value and limit
   std::string_view while_adequate;  ///< relation of value to limit while the model is adequate
 };

@@ -33,11 +33,11 @@ struct Evidence {
                          "largest gain that a long fit is expected to add to a short one; hypotheses whose "
                          "evidence is lower than the best by more than this are neither refined nor judged "
                          "(decision 61)"};
-  /// Share of the leading hypothesis's evidence. A better optimum of the base model that explains more than
-  /// this share restarts the diagnosis [-].
+  /// Share of the leading hypothesis's evidence. If a better optimum of the base model reduces chi2 by more
+  /// than this share, the diagnosis starts again [-].
   Threshold escape{
-      "evidence.escape", 0.5, "share of the leading extension's evidence",
-      "if a better optimum of the base model explains more, the diagnosis starts again (decision 61)"};
+      "evidence.escape", 0.5, "share of the leading hypothesis's evidence",
+      "if a better optimum of the base model reduces chi2 by more, the diagnosis starts again (decision 61)"};
   /// Largest excess in chi2 with which a completed fit still replaces a short fit [chi2].
   Threshold same_fit{
       "evidence.same_fit", 0.5, "chi2",
@@ -68,16 +68,18 @@ inline constexpr Posterior posterior;  ///< the thresholds in use
 /// Thresholds of the hold-out test of an effect on unseen events (decision 41).
 struct HeldOut {
   /// Largest ratio of the costs with and without the effect on an unseen event [-].
-  Threshold worse{"held_out.worse", 1.02, "ratio of costs",
-                  "largest cost ratio with and without the effect on a held-out event in which it hardly "
-                  "acts; scatter of the refit (decision 41)"};
+  Threshold worse{
+      "held_out.worse", 1.02, "ratio of costs",
+      "largest ratio of the costs of a held-out event with and without the effect, unless the cost is "
+      "within the limit of adequacy; allows for scatter of the refit (decision 41)"};
   /// Largest increase of the cost of an unseen event [chi2].
-  Threshold costs{"held_out.costs", 20, "chi2",
-                  "largest increase of the cost of a held-out event by an effect, or costs_share if that "
-                  "is more; a component that is really missing does not increase it (decision 41)"};
+  Threshold costs{
+      "held_out.costs", 20, "chi2",
+      "largest increase of the cost of a held-out event by an effect, or costs_share of its evidence, "
+      "whichever is larger; a component that is really missing does not increase it (decision 41)"};
   /// Largest increase of the cost of an unseen event, as a share of the effect's evidence [-].
   Threshold costs_share{"held_out.costs_share", 0.1, "share of the effect's evidence",
-                        "see costs (decision 41)"};
+                        "see held_out.costs (decision 41)"};
   /// Cost per value up to which an unseen event is predicted [chi2 per value].
   Threshold predicts{"held_out.predicts", 1.25, "chi2 per value",
                      "largest cost of a predicted held-out event (decision 41)"};
@@ -87,12 +89,13 @@ struct HeldOut {
   /// Share of one event in the total cost reduction, above which the effect is considered to act in this
   /// event only [-].
   Threshold alone{"held_out.alone", 0.8, "share of the cost reduction on held-out events",
-                  "an effect acts in one event only if that event has a larger share; other events then "
-                  "cannot predict it"};
+                  "an effect counts as acting in a single event if that event has a larger share; the other "
+                  "events then cannot predict it"};
   /// Share of chi2 that must remain in the event of `alone` when the fit excludes this event [-].
-  Threshold unpredicted{"held_out.unpredicted", 0.5, "share of that event's chi2",
-                        "an effect acts in one event only if, in addition, a larger share of that event's "
-                        "chi2 remains when the fit excludes the event"};
+  Threshold unpredicted{
+      "held_out.unpredicted", 0.5, "share of that event's chi2",
+      "an effect counts as acting in a single event if, in addition, a larger share of that "
+      "event's chi2 remains when the fit excludes the event"};
 };
 inline constexpr HeldOut held_out;  ///< the thresholds in use
 
@@ -101,16 +104,19 @@ struct Adequacy {
   /// Limit of the reduced chi-square [chi2 per value].
   Threshold reduced_chi2{
       "adequacy.reduced_chi2", 1.12, "chi2 per value",
-      "limit of adequacy; splines through noisy samples of the played-in voltage cause up to "
-      "this (decisions 16 and 17)"};
-  /// Limit of the means of the whitened residual over 0.5 to 2 s [standard deviations].
-  Threshold slow{"adequacy.slow", 8, "standard deviations",
-                 "limit of the means of the residual over 0.5 to 2 s, above white noise; thirty "
-                 "development cases without a hidden effect had 3.9 at most (measured 2026-11-21)"};
+      "limit of adequacy; splines through noisy samples of the played-in voltage cause a reduced "
+      "chi-square up to this (decisions 16 and 17)"};
+  /// Limit of the power of the whitened residual's means over 0.5 to 2 s, above that of white noise [standard
+  /// deviations].
+  Threshold slow{
+      "adequacy.slow", 8, "standard deviations",
+      "limit of the power of the residual's means over 0.5 to 2 s, above that of white noise; thirty "
+      "development cases without a hidden effect had 3.9 at most (measured 2026-11-21)"};
   /// Limit of the chi2 that a steady oscillation explains [chi2].
-  Threshold line{"adequacy.line", 40, "chi2 above its penalty",
-                 "least chi2 of a steady oscillation in the residual, equal to that of an effect; the "
-                 "strongest line of 75 cases without a hidden effect had 18 at most (measured 2026-11-26)"};
+  Threshold line{
+      "adequacy.line", 40, "chi2 above its penalty",
+      "limit of the chi2 of a steady oscillation in the residual, equal to evidence.accepted; the "
+      "strongest oscillation of 75 cases without a hidden effect had 18 at most (measured 2026-11-26)"};
   /// Penalty for each fitted number of a steady oscillation [chi2].
   Threshold number{"adequacy.number", 2, "chi2 per number",
                    "penalty for each fitted number of a steady oscillation (Akaike 1974)"};
@@ -134,8 +140,10 @@ struct Noise {
                        "incomplete model, because its reactances are accurate enough (decision 16)"};
   /// Reduced chi-square above which a fit updates the weight of its priors while it improves [chi2 per
   /// value].
-  Threshold believed{"noise.believed", 1.5, "chi2 per value",
-                     "largest reduced chi-square at which the priors have their full weight (decision 15)"};
+  Threshold believed{
+      "noise.believed", 1.5, "chi2 per value",
+      "above it a fit updates the weight of its priors, the reduced chi-square, while it improves "
+      "(decision 15)"};
   /// Reduced chi-square up to which calibrate corrects the bias from voltage noise [chi2 per value].
   Threshold taken_back{"noise.taken_back", 1.5, "chi2 per value",
                        "largest reduced chi-square at which calibrate corrects the bias from voltage noise; "
@@ -159,11 +167,12 @@ struct Search {
   /// Largest difference in chi2 between two runs of one model with different step sizes [chi2].
   Threshold other_steps{
       "search.other_steps", 4, "chi2",
-      "numerical difference between two runs of one model, because additional states change the step sizes"};
+      "largest numerical difference between two runs of one model, because additional states change the step "
+      "sizes"};
 };
 inline constexpr Search search;  ///< the thresholds in use
 
-/// Search for user-defined models of the inferred input (decision 21).
+/// Search for user-defined models of the inferred input, torque or field voltage (decision 21).
 struct UserModels {
   /// Largest share of the base model's chi2 that may remain with an inferred input for a user-defined model
   /// to be searched, unless the remaining residual counts as noise [-].
@@ -171,9 +180,10 @@ struct UserModels {
                      "largest share that may remain with the inferred input if a user-defined model is "
                      "searched: a reduction by 70 % (decision 21)"};
   /// Largest ratio of chi2 at which models of the other inferred input are searched too [-].
-  Threshold as_much{"user_models.as_much", 1.5, "ratio of chi2",
-                    "largest ratio of the chi2 of the other inferred input to that of the better one, if "
-                    "both explain the residual equally well (decision 21)"};
+  Threshold as_much{
+      "user_models.as_much", 1.5, "ratio of chi2",
+      "largest ratio of the chi2 of the other inferred input to that of the better one, at which "
+      "models of the other input are searched too (decision 21)"};
   /// Least share of the inferred input that a fitted user-defined model explains [-].
   Threshold least_explained{"user_models.least_explained", 0.3, "share of the inferred input",
                             "user-defined models that explain less are not fitted (decision 21)"};
@@ -186,8 +196,10 @@ struct UserModels {
                      "additional evidence required of a model that depends on the record's time, which is "
                      "meaningful only if all records start at the same time before the event (decision 21)"};
   /// Additional evidence for a user-defined model whose output is proportional to the initial value [chi2].
-  Threshold in_proportion{"user_models.in_proportion", 3, "chi2",
-                          "additional evidence of a model in proportion to the initial value (decision 21)"};
+  Threshold in_proportion{
+      "user_models.in_proportion", 3, "chi2",
+      "additional evidence required of a model whose output is proportional to the initial value "
+      "(decision 21)"};
 };
 inline constexpr UserModels user_models;  ///< the thresholds in use
 
@@ -336,8 +348,8 @@ struct DtrSimulation {
       "not compared after the last switching (RTE DTR, data sheet I16, comparison with simulations)"};
 };
 inline constexpr DtrSimulation dtr_simulation;  ///< the limits in use
-/// Limit of a channel's error relative to its movement. A limit in % of MVA alone would accept a model
-/// without any response, if the measured response is small.
+/// Limit of a channel's error relative to its movement, the deviation from its value before the event. A
+/// limit in % of MVA alone would accept a model without any response, if the measured response is small.
 struct Movement {
   /// Limit of the RMS error after the last switching, relative to the channel's RMS movement [%].
   Threshold error{
