@@ -63,7 +63,7 @@ sim::plant::Plant estimated_plant(const NetworkEstimate& estimate, const plant::
   if (machine != estimate.machine) {
     problems.add("a plant with " + machine, model.origin,
                  "the network " + estimate.network + " was trained on " + estimate.machine,
-                 "give a network of the plant's machine model");
+                 "give a network trained on the plant's machine model");
     problems.raise();
   }
   std::string absent;

@@ -146,7 +146,7 @@ std::string terminal_report(const Calibration& c) {
         coloured->colour, coloured->record);
   if (std::ranges::any_of(c.parameters, [](const auto& p) { return strained(p.fit); }))
     text +=
-        "Some values are far outside the prior (--prior-sd), which biases them and correlated "
+        "Some values are far outside the prior (--prior-sd). The prior then biases them and correlated "
         "values. Calibrate again from the new model, or with a larger --prior-sd.\n";
   for (const auto& combination : c.unidentified) text += "- " + describe(c, combination) + "\n";
   const std::string events = identify_text(c);

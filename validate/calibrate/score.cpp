@@ -157,7 +157,8 @@ std::vector<fit::FreeParameter> chosen_parameters(const sim::plant::Plant& plant
                                                 "the model has no free parameter of this name", problems);
   std::erase_if(free, [&](const fit::FreeParameter& f) { return std::ranges::count(held, f.id) > 0; });
   if (free.empty() && problems.empty())
-    problems.add("no free parameter", plant.name, "all are fixed, zero, or codes", "leave some free");
+    problems.add("no free parameter", plant.name, "all are fixed, zero, at a null value, or codes",
+                 "leave some free");
   problems.raise();
   return free;
 }

@@ -208,8 +208,9 @@ std::string beside_report(const std::vector<Way>& ways, const Truth& truth) {
   text += "\n";
   for (const auto& way : ways) {
     const Distance d = distance(way, truth);
-    text += fmt::format("{}: RMS relative error {:.3g} %, mean squared error {:.3g} (raw units)", way.name,
-                        100 * d.relative, d.mse);
+    text += fmt::format(
+        "{}: RMS relative error {:.3g} %, mean squared error {:.3g} (parameters in their own units)",
+        way.name, 100 * d.relative, d.mse);
     if (has_interval(way))
       text += fmt::format(", {} of {} intervals contain the true value", d.covering, d.intervals);
     text += "\n";
@@ -259,10 +260,11 @@ std::string terminal_report(const CurveFit& f, const Truth& truth) {
     if (p.at_bound) text += p.full_name() + " ended at its bound.\n";
   if (truth.empty()) return text;
   const Distance d = distance(way, truth);
-  return text + fmt::format(
-                    "\nRMS relative error {:.3g} %, mean squared error {:.3g} (raw units), {} of {} "
-                    "intervals contain the true value\n",
-                    100 * d.relative, d.mse, d.covering, d.intervals);
+  return text +
+         fmt::format(
+             "\nRMS relative error {:.3g} %, mean squared error {:.3g} (parameters in their own units), {} of {} "
+             "intervals contain the true value\n",
+             100 * d.relative, d.mse, d.covering, d.intervals);
 }
 
 json curve_fit_json(const CurveFit& f, const Truth& truth) {

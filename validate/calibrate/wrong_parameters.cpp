@@ -48,7 +48,7 @@ std::string wrong_sentence(const fit::SparseSelection& found, double adequate) {
   }
   const bool one = found.wrong.size() == 1;
   const bool enough = found.fit.reduced_chi2() <= adequate;
-  return fmt::format("{} {} must change{}: {}. The reduced chi-square is {:.3f} with {} ({}).{}",
+  return fmt::format("{} {} must change{}: {}. The reduced chi-square is {:.3f} with {} changed ({}).{}",
                      enough ? "Only" : "At least",
                      one ? "one parameter" : fmt::format("{} parameters", found.wrong.size()),
                      enough ? "" : ", and the residual still exceeds noise", names, found.fit.reduced_chi2(),
