@@ -59,7 +59,8 @@ struct Fit {
   std::vector<EventFit> events;             ///< fits of the events, in their order
   noise::NoiseModel noise;                  ///< noise model in which chi2 is computed
   double chi2 = 0, prior_cost = 0;          ///< chi2 of the data; chi2 of the priors
-  int values = 0, fitted = 0;  ///< number of compared values; number of variables, also fixed event states
+  int values = 0,
+      fitted = 0;  ///< number of compared values; number of variables, including fixed event states
   /// Log determinant of the posterior precision in units of the priors' precision (Occam factor). A parameter
   /// that the records do not determine contributes 0. NaN if the fit computed no standard errors.
   double occam = 0;

@@ -69,7 +69,7 @@ struct PlaybackRun {
   /// output by differentiation of each step, which at limits need a tolerance of 1e-9.
   std::vector<Output> linear_sensitivities = {};
   /// Trajectory cache: a run without sensitivities stores its trajectory here, and the same run with linear
-  /// sensitivities reuses it. The cache must be reset when another field changes. Null: no cache.
+  /// sensitivities reuses it. The cache must be reset when another member of the run changes. Null: no cache.
   std::shared_ptr<const TrajectoryCache>* cache = nullptr;
 };
 

@@ -115,7 +115,7 @@ struct Adequacy {
   /// Limit of the chi2 that a steady oscillation explains [chi2].
   Threshold line{
       "adequacy.line", 40, "chi2 above its penalty",
-      "limit of the chi2 of a steady oscillation in the residual, equal to evidence.accepted; the "
+      "limit of the chi2 that a steady oscillation of the residual explains, equal to evidence.accepted; the "
       "strongest oscillation of 75 cases without a hidden effect had 18 at most (measured 2026-11-26)"};
   /// Penalty for each fitted number of a steady oscillation [chi2].
   Threshold number{"adequacy.number", 2, "chi2 per number",
@@ -235,11 +235,13 @@ struct Parameters {
       "parameters.narrowed", 0.8, "ratio of standard errors",
       "a further event is recommended if it reduces a parameter's standard error below this ratio"};
   /// Largest relative difference in cost at which two starts count as having reached the same optimum [-].
-  Threshold agrees{"parameters.agrees", 0.01, "share of the cost",
-                   "largest relative difference in cost from the best start at the same optimum; "
-                   "the limit is at least agrees_least"};
+  Threshold agrees{
+      "parameters.agrees", 0.01, "share of the cost",
+      "largest relative difference in cost from the best start, for a start that reached the same "
+      "optimum; the limit is at least agrees_least"};
   /// Least absolute difference in cost for `agrees` [chi2].
-  Threshold agrees_least{"parameters.agrees_least", 1, "chi2", "cost of one standard error of a parameter"};
+  Threshold agrees_least{"parameters.agrees_least", 1, "chi2",
+                         "least limit of agrees: cost of one standard error of a parameter"};
   /// Change above which the verdict names a calibrated parameter [standard errors].
   Threshold moved{"parameters.moved", 2, "standard errors",
                   "the verdict names parameters that calibration changed by more"};
