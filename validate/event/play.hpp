@@ -39,14 +39,14 @@ struct Playing {
   /// playback fails after 15 steps per sample on average. Shorter steps would only resolve limits that are
   /// reached and left within one sample.
   bool hasty = true;
-  /// Relaxes the tolerance of each state according to its effect on the compared channels
+  /// Relaxes the tolerance of each state according to the state's influence on the compared channels
   /// (playin::allowances).
   bool lenient = false;
   /// Cache of these allowances for further playbacks of the same plant with other parameter values. Empty
   /// vector: they are computed and stored here. Null pointer: they are computed each time.
   std::vector<double>* allowance = nullptr;
   std::vector<playin::Output> sensitive =
-      {};  ///< outputs with sensitivities, in addition to channels, P and Q
+      {};  ///< outputs with sensitivities, in addition to P, Q and the compared channels
   std::shared_ptr<const playin::TrajectoryCache>* cache = nullptr;  ///< as in playin::PlaybackRun
   double until = 1e300;                                             ///< later samples are not simulated [s]
 };

@@ -14,7 +14,7 @@ namespace swingbank::validate::fit {
 /// decades, because an upper limit acts only if the signal reaches it. In draws with an odd number, half of
 /// the variance is common to all parameters with the same unit. The points of a curve and the time constants
 /// of a block then keep their order. The longest time constant is log-uniform up to the length of the
-/// records. A longer time constant has no effect in the records.
+/// records. A longer time constant does not show in the records.
 class Draws {
  public:
   /// `length`: length of the records [s]; 0: unknown.

@@ -42,7 +42,7 @@ class Steps : public ceres::IterationCallback {
   }
   [[nodiscard]] int taken() const { return taken_; }
   [[nodiscard]] bool out_of_reach() const { return out_of_reach_; }
-  /// Twice the cost of Ceres at the best point.
+  /// Returns the sum of squares at the best point, which is twice the cost of Ceres.
   [[nodiscard]] double cost() const {
     return costs_.empty() ? std::numeric_limits<double>::infinity() : costs_.back();
   }

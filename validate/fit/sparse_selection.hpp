@@ -30,7 +30,7 @@ struct Alternative {
 /// Result of the sparse parameter selection.
 struct SparseSelection {
   std::vector<WrongParameter> wrong;      ///< in descending order of evidence
-  std::vector<Alternative> alternatives;  ///< pairs; single replacements are in WrongParameter::tied
+  std::vector<Alternative> alternatives;  ///< replacements by pairs; single ones are in WrongParameter::tied
   Fit fit;                       ///< with the named parameters free and all others at their given values
   double before = 0;             ///< reduced chi-square of the given model, with each event's state fitted
   double best = 0;               ///< reduced chi-square with every parameter free

@@ -22,11 +22,12 @@ inline constexpr double kSwitchScale = 1e-3;
 inline constexpr double kTurnScale = 1e-3, kTurnPrior = 100;  ///< [rad]; [kTurnScale]
 
 inline constexpr int kStates = 4;  ///< number of initial states: P, Q [pu], angle [rad], speed [pu]
-/// Kind of each state, in the order of kStates.
+/// Kind of each initial state, in the order of this list.
 inline constexpr std::array<playin::SensitivityParameter::Kind, kStates> kStateKind = {
     playin::SensitivityParameter::Kind::P, playin::SensitivityParameter::Kind::Q,
     playin::SensitivityParameter::Kind::angle, playin::SensitivityParameter::Kind::speed};
-/// Unit of each state in the search. It is far below observable changes and far above rounding errors.
+/// Unit of each initial state in the search. It is far below observable changes and far above rounding
+/// errors.
 inline constexpr std::array<double, kStates> kStateScale = {1e-3, 1e-3, 1e-3, 1e-5};
 /// Prior standard deviation of the initial state, in units of kStateScale. It is small, because a plant is
 /// nearly in steady state before an event.

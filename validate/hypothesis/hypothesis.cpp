@@ -147,7 +147,8 @@ std::string_view stem(std::string_view name) {
   return name;
 }
 
-/// Start values of a parameter group other than a dead band, relative to the range of its parameters.
+/// Start values of a parameter group other than a dead band: distances from the null value, relative to the
+/// range of the parameter on that side.
 constexpr std::array kCurveStarts = {0.02, 0.1, 0.3, -0.02, -0.1};
 /// Start values of a dead band's edges, relative to their range of 1 pu. A dead band is a few hundredths of 1
 /// pu for voltage, and a thousandth of 1 pu for frequency. If the start value is wider than the signal, the

@@ -61,8 +61,9 @@ class Identifying {
   /// skipped.
   using Reduced = Polish::Reduced;
 
-  /// Prepares the reduced plants. If the base model nearly fits, it is linearised about its fit, and a side
-  /// whose free input explains no more than noise is skipped. Otherwise the inputs are inferred.
+  /// Prepares the reduced plants. If the reduced chi-square of the base model is below noise.measurable, the
+  /// plant is linearised about its fit, and a side whose free input has little evidence is skipped. Otherwise
+  /// the inputs are inferred.
   void begin() {
     if (base_model_.fit.reduced_chi2() >= thresholds::noise.measurable) return infer();
     std::vector<event::EventState> states;

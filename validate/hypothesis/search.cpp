@@ -56,7 +56,7 @@ class WholeFits {
         sim::plant::parameter_value(plant, f.id) = sim::plant::parameter_value(base_model.fit.plant, f.id);
       try {
         linearise(plant, std::vector<fit::EventState>(base_model.events.size()));
-      } catch (const InputError&) {  // they cannot be simulated; only the fit is linearised
+      } catch (const InputError&) {  // the submitted values cannot be simulated
       }
     }
     std::vector<fit::EventState> fitted;

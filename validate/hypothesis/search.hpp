@@ -29,7 +29,7 @@ struct BaseModel {
   int threads = 1;                                    ///< number of threads
   /// Returns whether the user has asked to stop; results so far are then kept. May be empty.
   std::function<bool()> stop = {};
-  /// Inferred inputs that are free in time with this base model; null: not yet inferred.
+  /// Inputs inferred with this base model, free functions of time; null: not yet inferred.
   const reduced::FreeInput *torque = nullptr, *field = nullptr;  ///< inferred inputs
   /// Called with each hypothesis's fit, also after an interruption, from any thread. May be empty.
   std::function<void(const fit::Fit&)> reached = {};
@@ -63,8 +63,8 @@ double length(const BaseModel& base_model);
 /// Returns the reason why a hypothesis with this predicted reduction of chi2 is not fitted.
 std::string too_small(double gain);
 
-/// Returns the plant at its prior mean: the hypothesis at its first start, and parameters of effects added
-/// before at their prior means.
+/// Returns the plant at its prior mean: the hypothesis at its first start values, and parameters of effects
+/// added before at their prior means.
 sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h);
 
 /// Returns the fit of the hypothesis with the standard errors that its evidence requires. Empty if they

@@ -7,8 +7,8 @@
 namespace swingbank::validate::playin {
 
 std::vector<double> allowances(const LinearPlant& plant, std::span<const Output> compared, double interval) {
-  constexpr double kUnseen = 1e-6;  // below this effect the factor is 1: a limit may delay the effect
-  constexpr int kDoublings = 8;     // effects are evaluated up to 2^8 samples later
+  constexpr double kUnseen = 1e-6;  // the factor stays 1 below this influence, which a limit may have delayed
+  constexpr int kDoublings = 8;     // influences are evaluated up to 2^8 samples later
   const Eigen::Index n = plant.A.rows();
   std::vector<double> all(static_cast<std::size_t>(n), 1.0);
   if (compared.empty() || !plant.A.allFinite() || !plant.C.allFinite()) return all;

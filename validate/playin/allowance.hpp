@@ -1,5 +1,6 @@
 #pragma once
-// Tolerance of each state in an integration step, derived from its effect on the compared channels.
+// Tolerance of each state in an integration step, derived from the state's influence on the compared
+// channels.
 #include <span>
 #include <vector>
 

@@ -153,7 +153,7 @@ class Solver {
       trace_->dx.push_back(sim::value_of(derivative[i]));
     }
   }
-  /// Limits the time that effects receive to just before the next switching time.
+  /// Limits the time that the effects' equations receive to just before the next switching time.
   void look_ahead() {
     equations_.side.last_moment =
         next_ < times_.size() ? times_[next_].time - sim::plant::kBeforeSwitching : 1e300;
@@ -198,7 +198,7 @@ class Solver {
     equations_.of_plant().clamp_states(equations_.c.data(), x_.data(), moved);
     fresh_ = sim::value_of(moved) > 0;
   }
-  /// Evaluates the guards at these states, from the last evaluated signals.
+  /// Evaluates the guards (functions that are zero at a discontinuity) at these states and the last signals.
   void look_at_guards(const std::vector<T>& x, std::vector<T>& guards) {
     if (!guards.empty())
       equations_.of_plant().guard(equations_.c.data(), x.data(), equations_.signals, guards.data());

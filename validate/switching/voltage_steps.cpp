@@ -16,9 +16,9 @@ double beyond(Complex x, Complex a, Complex b) {
   const double at = length > 0 ? std::real((x - a) * std::conj(b - a)) / length : 0.0;
   return std::abs(x - a - std::clamp(at, 0.0, 1.0) * (b - a));
 }
-/// Returns the distance of each step [pu] from the steps two and three before and after it, and from the
-/// straight segments between these. The segments cover steps whose size changes gradually, as at the end of a
-/// converter's ramp or at the turning point of a swing.
+/// Returns the distance of the change over each sample interval [pu] from the changes two and three intervals
+/// before and after it, and from the straight segments between these. The segments cover changes that grow or
+/// shrink gradually, as at the end of a converter's ramp or at the turning point of a swing.
 std::vector<double> prominence(const std::vector<Complex>& step) {
   std::vector<double> d(step.size(), 0.0);
   for (std::size_t k = 3; k + 3 < step.size(); ++k) {
@@ -29,8 +29,8 @@ std::vector<double> prominence(const std::vector<Complex>& step) {
   }
   return d;
 }
-/// Returns whether intervals first .. last belong to a fast swing, where no step stands out from its
-/// neighbours.
+/// Returns whether intervals first .. last belong to a fast swing, where no change over an interval stands
+/// out from its neighbours.
 bool is_swing(const std::vector<Complex>& step, const std::vector<double>& d, std::size_t first,
               std::size_t last) {
   constexpr double kOfSwing = 0.25;
@@ -46,8 +46,8 @@ bool is_swing(const std::vector<Complex>& step, const std::vector<double>& d, st
 struct StepSpan {
   std::size_t first, last;
 };
-/// Removes intervals at both ends where the voltage only drifts (consecutive steps are equal), as in a short
-/// fault.
+/// Removes intervals at both ends where the voltage only drifts (the changes over consecutive intervals are
+/// equal), as in a short fault.
 StepSpan trimmed(const std::vector<Complex>& step, StepSpan span, double limit) {
   double largest = 0;
   for (std::size_t i = span.first; i <= span.last; ++i) largest = std::max(largest, std::abs(step[i]));
@@ -89,8 +89,8 @@ std::size_t largest_of(const std::vector<Complex>& step, StepSpan span) {
       at);
 }
 /// Returns whether a subtransient decay follows the sharp step in interval m. An instrument's window is
-/// symmetric and decreases to both sides. If its middle lies in m, its share in m - 1 is at least that in m +
-/// 2. A machine responds only after the step.
+/// symmetric and decreases to both sides. If its middle lies in m, the part of the step in m - 1 is at least
+/// that in m + 2. A machine responds only after the step.
 bool decays_after(const std::vector<Complex>& step, std::size_t m, double limit) {
   constexpr double kOfNext = 0.15, kOfLimit = 0.25;  // allowance for the rotor's swing
   constexpr double kLess = 0.9;                      // above it the next step begins
@@ -116,9 +116,9 @@ bool has_peak(const std::vector<Complex>& step, StepSpan span, std::size_t m) {
 
 constexpr double kGoodPart = 0.15;  ///< fraction of a step's largest change
 
-/// Returns the distance of each step from the extrapolation of the two steps before it or of the two steps
-/// after it, whichever is smaller [pu]. A switching step differs from both extrapolations, the change next to
-/// it from one, and a rotor swing from neither.
+/// Returns the distance of the change over each sample interval from the extrapolation of the two changes
+/// before it or of the two after it, whichever is smaller [pu]. The change at a switching differs from both
+/// extrapolations, the change next to it from one, and a rotor swing from neither.
 std::vector<double> extrapolation_errors(const std::vector<Complex>& step) {
   std::vector<double> out(step.size(), 0.0);
   for (std::size_t k = 2; k + 2 < step.size(); ++k)
@@ -164,7 +164,7 @@ std::vector<Switching> VoltageSteps::isolated_steps(double threshold) const {
 
 std::vector<Switching> VoltageSteps::detect(double threshold) const {
   const std::size_t steps = step_.size();
-  // A step differs from both neighbours; the interval next to a step differs from one of them only.
+  // The change at a step differs from both neighbours; the change next to a step differs from one only.
   std::vector<double> spike(steps, 0.0);
   for (std::size_t k = 1; k + 1 < steps; ++k)
     spike[k] = std::min(std::abs(step_[k] - step_[k - 1]), std::abs(step_[k] - step_[k + 1]));

@@ -50,7 +50,7 @@ class VoltageSteps {
   [[nodiscard]] bool is_sharp(const Switching& first, double threshold) const;
   const record::Record* record_;
   std::vector<Complex> step_;
-  std::vector<double> prominence_;  ///< distance of each step from those around it [pu]
+  std::vector<double> prominence_;  ///< distance of each change from those around it [pu]
 };
 
 /// Returns the change of the voltage phasor over each sample interval [pu].

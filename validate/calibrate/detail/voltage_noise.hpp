@@ -8,7 +8,8 @@
 
 namespace swingbank::validate::calibrate {
 
-/// Bias of the score and of the information matrix by noise of the played-in voltage.
+/// Bias of the score J'r and of the information matrix J'J due to noise of the played-in voltage. J:
+/// sensitivities; r: residual.
 struct VoltagePull {
   Eigen::VectorXd score;        ///< expectation of J'r at the true parameters, summed over all samples
   Eigen::MatrixXd information;  ///< expectation of the part of J'J that noise alone causes

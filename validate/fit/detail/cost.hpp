@@ -1,5 +1,5 @@
 #pragma once
-// Priors and ordering constraints of a fit as Ceres cost functions, and the axes of the search.
+// Priors and ordering constraints of a fit as Ceres cost functions, and the constant quantities of a fit.
 #include <ceres/ceres.h>
 
 #include <algorithm>

@@ -268,8 +268,8 @@ class LinearSensitivities {
     equations.of_plant().guard(equations.c.data(), x_.data(), equations.signals, guards_.data());
     to.guard = guards_[static_cast<std::size_t>(guard)];
   }
-  /// Sets the columns of B and D of the hat functions that are not zero at t. A column is the effect of the
-  /// input times the value of the hat function.
+  /// Sets the columns of B and D of the hat functions that are not zero at t. A column is the derivative with
+  /// respect to the input, times the value of the hat function.
   void raise_hats(double t) {
     while (begun_ < begins_.size() && begins_[begun_].first <= t)
       active_ = std::max(active_, begins_[begun_++].second);
@@ -355,8 +355,9 @@ class LinearSensitivities {
     return false;
   }
   /// Integrates the sensitivities over an interval of h [s]: (I - h A/2 - h A0/6 + h^2 A^2/6) S = S0 + h A0
-  /// S0/3 + h (B0 + B)/2 - h^2 A B/6. This is the two-derivative formula of order 3, in which differences
-  /// between the two nodes replace the derivatives of A and B.
+  /// S0/3 + h (B0 + B)/2 - h^2 A B/6. A0, B0, S0: at the start of the interval; A, B, S: at its end. This is
+  /// the two-derivative formula of order 3, in which differences between the two nodes replace the
+  /// derivatives of A and B.
   void step(double h) {
     const Linear& end = meets_a_limit() ? before_ : now_;
     const P8 half(h / 2), third(h / 3), sixth(h / 6), square(h * h / 6);
@@ -426,7 +427,7 @@ class LinearSensitivities {
   std::size_t active_ = 0;            ///< 1 + largest index of a sensitivity parameter whose input has begun
   std::size_t begun_ = 0;             ///< number of entries of `begins_` that have begun
   std::vector<std::pair<double, std::size_t>>
-      begins_;                                    ///< start of a parameter's input [s], and its number + 1
+      begins_;  ///< start of a parameter's input [s]; the parameter's index + 1
   std::array<std::vector<std::size_t>, 2> hats_;  ///< parameters of the hat functions of torque and field
   std::optional<PlaybackEquations<P8>> unperturbed_;
   std::vector<Copies> copies_;

@@ -24,7 +24,7 @@ inline double hat(const std::vector<double>& knots, std::size_t k, double t) {
   return std::max(0.0, (knots[k + 1] - t) / (knots[k + 1] - knots[k]));
 }
 
-/// Access to the sensitivities of a scalar; without effect for types without sensitivities.
+/// Access to the sensitivities of a scalar; does nothing for types without sensitivities.
 template <class T>
 struct Seeds {
   static void add(T&, std::size_t, double) {}
@@ -47,7 +47,7 @@ struct Seeds<sim::D8> {
 /// Conditions on one side of a switching time.
 struct Side {
   int segment = 0;             ///< of the voltage curve
-  double last_moment = 1e300;  ///< largest time that effects receive [s]
+  double last_moment = 1e300;  ///< largest time that the effects' equations receive [s]
   bool isolated = false;       ///< disconnected from the grid
 };
 
@@ -57,7 +57,7 @@ class PlaybackEquations {
  public:
   using Kind = SensitivityParameter::Kind;
 
-  /// Constructs the equations at the operating point, with sensitivities if T carries them.
+  /// Constructs the equations at the operating point, with sensitivities if T has them.
   PlaybackEquations(const PlaybackRun& run, std::span<const SensitivityParameter> parameters)
       : PlaybackEquations(run, parameters, sim::plant::OperatingOf<T>{}) {
     start();
