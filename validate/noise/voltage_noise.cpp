@@ -69,7 +69,7 @@ Band in_band(const event::FitEvent& e, std::size_t first, int n) {
   return band;
 }
 
-/// Returns whether a switching or a missing sample lies in the segment or near it.
+/// Returns whether a sample of the segment is not compared, or a switching lies in the segment or near it.
 bool disturbed(const event::FitEvent& e, std::size_t first, std::size_t n) {
   const std::size_t last = first + n - 1;
   for (std::size_t k = first; k <= last; ++k)
@@ -130,7 +130,8 @@ struct Sums {
     left += other.left;
     freedom += other.freedom;
   }
-  /// Returns the sum of squares of the residual after subtraction of this combination.
+  /// Returns the sum of squares of the residual after subtraction of both responses, times the coefficients
+  /// x.
   [[nodiscard]] double rest(const Eigen::Vector2d& x) const {
     return std::max(0.0, left - 2 * x.dot(right) + x.dot(normal * x));
   }
