@@ -74,8 +74,8 @@ class Data {
         return false;
     return n > 1;
   }
-  /// Returns whether the four-byte values are floats: integers interpreted as floats are mostly denormal or
-  /// not finite.
+  /// Returns whether the four-byte values are floats: all finite values except 0 have magnitudes from 1e-15
+  /// to 1e15. Integers interpreted as floats are mostly denormal (below 1e-38) or not finite.
   [[nodiscard]] bool contains_floats() const {
     const std::size_t size = sample_size(4), n = dat_.size() / size;
     bool any = false;
@@ -260,7 +260,7 @@ class Data {
     const double intervals = static_cast<double>(stamps_.size() - 1);
     if (stamped > 9 * rated || rated > 9 * stamped)
       problems_.add(
-          fmt::format("a sampling rate of {:.6g} per second, and time stamps of {:.6g} per second",
+          fmt::format("a sampling rate of {:.6g} per second, but {:.6g} time stamps per second",
                       intervals / rated, intervals / stamped),
           out_.file,
           fmt::format("by the rate the record lasts {:.4g} s, by its stamps {:.4g} s: one of them is "
@@ -388,7 +388,7 @@ void make_even(Comtrade& c, double min_rate, Problems& problems) {
   std::string note = fmt::format("The record has the sampling rates {} per second; ", rates);
   if (to - from < all.size())
     note += fmt::format(
-        "the section from {:.4g} to {:.4g} s was used; all other sections are too slow for waveforms",
+        "the section from {:.4g} to {:.4g} s was used; the others are shorter or too slow for waveforms",
         c.t[kept.front()], c.t[kept.back()]);
   if (kept.size() < all[to - 1].end - all[from].first)
     note += fmt::format("{}faster sections were decimated to {:g} per second",

@@ -37,7 +37,7 @@ struct Comtrade {
   std::vector<ComtradeStretch> stretches;  ///< in order; empty if time stamps determine the times
   double resolution = 0;  ///< rounding of the time stamps [s]; 0 if a rate determines the times
   std::vector<ComtradeChannel> channels;  ///< analogue channels, in the order of the configuration
-  std::vector<std::string> notes;         ///< contradictions between the files that were resolved
+  std::vector<std::string> notes;         ///< repairs and resolved contradictions, as sentences
 
   std::string file;                 ///< name of the data file in messages
   std::vector<std::size_t> places;  ///< line (ASCII) or first byte of each sample
@@ -47,10 +47,10 @@ struct Comtrade {
 };
 
 /// Returns the record of a configuration and its data; messages contain the names of the two files. Notes
-/// report each contradiction that was resolved: data type, number of samples, truncated last sample, overflow
-/// of the time stamps. Throws InputError with every fault of the configuration or, if it has none, of the
-/// data, each with its line or byte: unknown revisions, invalid numbers, gaps in the sample numbers, a rate
-/// and stamps in different units.
+/// report each resolved contradiction (data type, number of samples) and each repair (truncated last sample,
+/// overflow of the time stamps). Throws InputError with every fault of the configuration or, if it has none,
+/// of the data, each with its line or byte: unknown revisions, invalid numbers, gaps in the sample numbers, a
+/// rate and stamps in different units.
 Comtrade parse_comtrade(std::string_view cfg, std::string_view dat, const std::string& cfg_name,
                         const std::string& dat_name);
 

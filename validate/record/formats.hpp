@@ -10,8 +10,9 @@
 namespace swingbank::validate::record {
 
 /// Returns the record of a COMTRADE file with phasors (channels named as text columns, with units) or
-/// three-phase waveforms, which are converted to positive-sequence phasors. Power out of the machine is V
-/// conj(I). Waveforms and values in kV require base.kv. Throws InputError.
+/// three-phase waveforms, which are converted to positive-sequence phasors. P and Q of waveforms, and of
+/// phasors without recorded P and Q, are 3 V conj(I) out of the machine. Waveforms and values in kV require
+/// base.kv. Throws InputError.
 Record record_of_comtrade(const Comtrade& comtrade, const std::string& name, const RecordBase& base,
                           const ReadOptions& options);
 
@@ -22,8 +23,8 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
                         const ReadOptions& options);
 
 /// Returns the record of a MATLAB file (v4, v5, v7.3). Vectors, matrices with a list of names, and structs of
-/// these become text columns. Line numbers in messages count samples from 2. Throws InputError, also for
-/// truncated files.
+/// these become text columns. In messages, the first sample is line 2. Throws InputError, also for truncated
+/// files.
 Record read_mat_record(const std::filesystem::path& file, const RecordBase& base, const ReadOptions& options);
 
 /// Returns the record of a PSCAD run, whose .inf is `source.config`. The channels are read like text columns.

@@ -40,7 +40,8 @@ std::vector<double> samples_of(const Wave& wave, SampleFaults& faults) {
   return samples;
 }
 
-/// The phasors of an absent phase are the negative sum of the other two.
+/// Returns the positive sequence of a set of waveforms. The phasors of a phase that is not recorded are the
+/// negative sum of the other two.
 Sequence sequence_of(const WaveSet& set, const Comtrade& comtrade, double nominal, double rate,
                      SampleFaults& faults, Problems& problems) {
   Waveforms w;

@@ -75,7 +75,7 @@ class CsvReader {
     return 2 * (numbers - empty) > static_cast<std::ptrdiff_t>(cells.size()) - empty;
   }
 
-  /// Returns whether a line before the heading may belong to it: names of stations, numbers of phasors.
+  /// Returns whether a line before the heading may belong to it: names of stations or phasors, no numbers.
   [[nodiscard]] bool belongs_to_header(const Cells& cells) const {
     constexpr int kLinesAbove = 5;
     return top_.line + 1 - number_ <= kLinesAbove && cells.size() > 1 &&

@@ -1,4 +1,4 @@
-// Conversion of one plant of a simulated run to a record.
+// Conversion of one plant's channels in a simulated run to a record.
 #include <fmt/format.h>
 
 #include <algorithm>

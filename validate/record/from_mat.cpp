@@ -46,7 +46,7 @@ bool hdf5_is_cut_off(std::string_view bytes) {
   const std::size_t addresses = version == 0 ? 24
                                 : version == 1
                                     ? 28
-                                    : 12;  // offset of three addresses; the third is the file's end
+                                    : 12;  // offset of the addresses; the third one is the end of the file
   return bytes.size() < number_at(bytes, kBegin + addresses + 16, 8);
 }
 /// Returns whether a file is truncated. A v5 file consists of elements with stated lengths; it is truncated
@@ -158,7 +158,7 @@ class MatReader {
 
   void variable(matvar_t& v) { take(v, v.name == nullptr ? "?" : v.name, "", 0); }
 
-  /// Returns the columns as text separated by tabs, which parse_record reads.
+  /// Returns the columns that are as long as the time, as text separated by tabs, which parse_record reads.
   std::string text(const std::string& time) {
     name_tables();
     const std::size_t rows = time_rows(time);

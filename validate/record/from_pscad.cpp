@@ -104,7 +104,7 @@ struct OutFile {
   std::vector<int> lines = {};  ///< line of each row
 };
 
-/// Consecutive rows with the same fault in one column.
+/// Consecutive rows without a finite number in one column.
 struct BadRun {
   std::string cell;
   int first = 0, last = 0;
@@ -257,7 +257,7 @@ void check_rows(const std::vector<OutFile>& parts, Problems& problems) {
       problems.add(fmt::format("{} rows", other.t.size()),
                    fmt::format("{}:{}", other.file, other.lines.empty() ? 1 : other.lines.back()),
                    fmt::format("{} has {}", one.file, one.t.size()),
-                   "give the files of one run, after its end");
+                   "give the files of one run that has ended");
   }
 }
 

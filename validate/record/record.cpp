@@ -118,7 +118,8 @@ Record read_staged(const Source& source, const RecordBase& base, ReadOptions opt
     if (power->empty()) power->assign(r.t.size(), 0.0);
   if (r.speed.empty() && !r.f.empty()) {
     r.speed = r.f;
-    r.notes.emplace_back("The frequency is used as the speed, because no grid is connected to the machine.");
+    r.notes.emplace_back(
+        "The frequency is used as the speed, because the breaker opens and no speed is recorded.");
   }
   return r;
 }

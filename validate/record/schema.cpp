@@ -73,8 +73,8 @@ std::string record_schema() {
       {"title", "Row of a record of Swingbank"},
       {"description",
        "One row of a text file: its values under their column names. null: no value. Columns with other "
-       "names are ignored, unless their names are other spellings of these (validate/record/README.md) or a "
-       "map of columns names them."},
+       "names are ignored, unless their names are other spellings of these (validate/record/README.md) or "
+       "[record.columns] or --columns assigns them."},
       {"type", "object"},
       {"properties", properties},
       {"allOf", SchemaJson::array({has_column(Quantity::time), has_column(Quantity::V), power})}};

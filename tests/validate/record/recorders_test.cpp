@@ -107,7 +107,7 @@ TEST(RecorderLeniency, AcceptsOverflowingTimeStamps) {
 TEST(RecorderLeniency, RefusesRateAndStampsInDifferentUnits) {
   Writer w = phasors();
   w.edit = [](auto& lines) { lines[9] = "60000,90"; };
-  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("60000 per second, and time stamps of 60 per second"),
+  EXPECT_THAT(w.faults(), ElementsAre(AllOf(HasSubstr("60000 per second, but 60 time stamps per second"),
                                             HasSubstr("in another unit"))));
 }
 

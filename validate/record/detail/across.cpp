@@ -10,7 +10,7 @@ namespace swingbank::validate::record {
 namespace {
 
 constexpr std::size_t kHighestDegree = 7;
-constexpr double kRounding = 1e-9;  ///< relative residual below which fits count as equal
+constexpr double kRounding = 1e-9;  ///< RMS residual below which fits count as equal [pu, rad]
 
 /// Values at the given abscissae, followed by values at the abscissae in the gap.
 using Curve = std::vector<double>;

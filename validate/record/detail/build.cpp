@@ -325,7 +325,7 @@ void take_over(Record& from, Record& all, const std::string& files, Problems& pr
     std::vector<double>& values = *channel(from, q);
     if (values.empty()) continue;
     if (!channel(all, q)->empty())
-      problems.add("two columns of " + std::string(word_of(q)), files, "each of the files gives it",
+      problems.add("two columns of " + std::string(word_of(q)), files, "several files contain it",
                    "name one of them: --columns");
     *channel(all, q) = at_places(values, places);
   }

@@ -30,11 +30,12 @@ class SampleFaults {
   /// merged; `what` describes the first.
   void add(const std::string& subject, std::string what, std::size_t sample, std::string why,
            std::string remedy);
-  /// Adds a missing value, which becomes a fault in report_missing() if its gap is longer than kLongestGap.
+  /// Adds a missing value. It is a fault only after report_missing().
   void lose(const std::string& subject, std::string what, std::size_t sample, std::string why,
             std::string remedy);
   /// Returns marks of the samples passed to lose(); empty if there are none.
   [[nodiscard]] std::vector<char> lost(std::size_t samples) const;
+  /// Turns all missing values into faults, because a gap is longer than kLongestGap.
   void report_missing();
   /// Removes faults of samples outside first .. last.
   void keep(std::size_t first, std::size_t last);
@@ -59,7 +60,7 @@ class SampleFaults {
 struct RawColumn {
   std::string name;
   ColumnMeaning meaning;
-  std::vector<double> values;  ///< as written; NaN if a fault was added
+  std::vector<double> values;  ///< as written; NaN if missing or invalid
 };
 
 /// A file's columns before conversion of units, with properties that only its reader knows.
@@ -96,7 +97,7 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
                     Problems problems, const std::string& file);
 
 /// Joins the columns of several files of one event to one record, sampled at the times of the file that
-/// contains P. Throws InputError if a quantity is missing or occurs twice.
+/// contains P (without P: of the last file). Throws InputError if a quantity is missing or occurs twice.
 Record join_records(std::vector<Record> parts, const ReadOptions& options, const std::string& files);
 
 }  // namespace swingbank::validate::record

@@ -75,8 +75,8 @@ std::string plain(std::string_view cell, char separator, Number& n) {
   return sign + std::string(cell);
 }
 
-/// Returns whether blanks separate the values: at least three of the first 50 lines contain only numbers
-/// separated by blanks.
+/// Returns whether blanks separate the values: at least three of the first 50 lines consist of three or more
+/// numbers separated by blanks.
 bool by_blanks(std::string_view text) {
   int found = 0;
   for (int n = 0; n < 50 && !text.empty(); ++n) {

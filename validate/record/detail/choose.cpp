@@ -51,8 +51,9 @@ std::vector<Quantity> missing(const Present& present, const ReadOptions& options
   return all;
 }
 
-/// Returns whether a column of terminal `of` belongs to terminal `chosen`: it has no terminal, the same one,
-/// or that of equipment which contains it ("PLANT" of "PLANT.GSU", "32" of "32/1").
+/// Returns whether a column of terminal `of` belongs to terminal `chosen`: the column has no terminal, the
+/// same one, or that of equipment that contains `chosen` ("PLANT" contains "PLANT.GSU", "32" contains
+/// "32/1").
 bool belongs(const std::string& of, const std::string& chosen) {
   if (of.empty() || of == chosen) return true;
   return chosen.starts_with(of) && (chosen[of.size()] == '.' || chosen[of.size()] == '/');
@@ -243,7 +244,7 @@ class Mapper {
                                                                const std::string& text) {
     auto m = quantity_of(word);
     if (!m) {
-      problems_.add("'" + word + "'", "the map of columns", "a record has no such quantity",
+      problems_.add("'" + word + "'", "--columns or [record.columns]", "a record has no such quantity",
                     "use t, V, theta, f, P, Q, I, phi, speed, omega, Efd, Ifd, Vs, Vref, Pm, Pref or "
                     "gate");
       return std::nullopt;
@@ -276,8 +277,8 @@ class Mapper {
           fmt::format("column '{}'", h.name), where_, "its unit is missing or not known",
           fmt::format("give it: {} = \"{} [unit]\", as in {}", word, h.name, names_of(m->quantity)));
     about_.named.push_back(word);
-    about_.notes.push_back(fmt::format("{}{} is the column '{}', from the map of columns.", word,
-                                       named.negated ? ", with the sign reversed," : "", h.name));
+    about_.notes.push_back(fmt::format("{}{} is the column '{}', assigned by --columns or [record.columns].",
+                                       word, named.negated ? ", with the sign reversed," : "", h.name));
     return std::pair(*at, *m);
   }
 
@@ -404,7 +405,7 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
     used[q] = true;
     if (again || (meaning->phase && !phases.emplace(q, meaning->phase->number).second))
       problems.add(fmt::format("column '{}'", name), where, "another column gives the same quantity",
-                   "leave one of " + names_of(meaning->quantity) + ", or say which: --columns");
+                   "keep only one of " + names_of(meaning->quantity) + ", or choose one with --columns");
     chosen.push_back(i);
   }
   check_missing(used, options, where, headings, problems);

@@ -29,8 +29,8 @@ constexpr Clock kUnix[] = {
     {7e17, 5e18, Unit::nanosecond, 0, "nanoseconds since 1970"},
 };
 
-/// Returns the 10 % quantile of the positive steps; NaN if there are none. Longer steps are not
-/// representative of simulations with variable steps.
+/// Returns the 10 % quantile of the positive steps; NaN if there are none. A higher quantile may be a long
+/// step of a simulation with variable steps.
 double usual_step(const std::vector<double>& t) {
   std::vector<double> steps;
   for (std::size_t k = 0; k + 1 < t.size(); ++k)

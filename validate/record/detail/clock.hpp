@@ -6,7 +6,7 @@ namespace swingbank::validate::record {
 
 /// Infers the unit of the time column from its values if its heading gives none. The units are seconds,
 /// milliseconds, microseconds or nanoseconds since 1970, days of a spreadsheet (since 1899-12-30) or of
-/// MATLAB (since year 0), and seconds from an arbitrary origin. Days are converted to seconds after the first
+/// MATLAB (since year 0), and seconds from an arbitrary origin. Days are converted to seconds since the first
 /// sample. The result is noted.
 void settle_clock(RawRecord& raw);
 

@@ -39,7 +39,7 @@ class Config {
   Fields next() {
     ++number_;
     if (rest_.empty()) {
-      if (!ended_) fault("end of the configuration", "lines are missing", "export it again");
+      if (!ended_) fault("premature end of the configuration", "lines are missing", "export it again");
       ended_ = true;
       return {};
     }
@@ -101,7 +101,7 @@ class Config {
     }
     if (analogue < 1 || status < 0 ||
         number(f, 0, "number of channels") != static_cast<double>(analogue + status)) {
-      fault("the numbers of channels", "total, analogue (with A) and status (with D) must agree",
+      fault("inconsistent numbers of channels", "total, analogue (with A) and status (with D) must agree",
             "export the configuration again");
       return false;
     }
@@ -128,9 +128,9 @@ class Config {
             fmt::format("it follows channel {:g}; numbers must increase", last_channel_),
             "export the configuration again");
     if (numbered > last_channel_ + 1)
-      c_.about.notes.push_back(
-          fmt::format("Channel numbers skip from {:g} to {:g} ({}:{}): the values follow the lines.",
-                      last_channel_, numbered, name_, number_));
+      c_.about.notes.push_back(fmt::format(
+          "Channel numbers skip from {:g} to {:g} ({}:{}): values are assigned in the order of the lines.",
+          last_channel_, numbered, name_, number_));
     last_channel_ = numbered;
     ComtradeChannel c;
     c.id = f[1];
@@ -162,7 +162,7 @@ class Config {
     c_.about.nominal = number(next(), 0, "line frequency");
     const double n = number(next(), 0, "number of sampling rates");
     if (!(n >= 0 && n < 1000)) {
-      fault("the number of sampling rates", "it must be 0 to 999", "export the configuration again");
+      fault("an invalid number of sampling rates", "it must be 0 to 999", "export the configuration again");
       return;
     }
     for (int k = 0; k < std::max(1.0, n) && !ended_; ++k) {
@@ -209,7 +209,7 @@ class Config {
     const double multiplier = time_multiplier();
     c_.stamp = (digits > 6 ? 1e-9 : 1e-6) * multiplier;
     if (!(multiplier > 0))
-      fault("the time multiplier", "it must be positive", "export the configuration again");
+      fault("an invalid time multiplier", "it must be positive", "export the configuration again");
   }
 
   /// Returns the time multiplier of the last line, which exists since 1999; 1 if the line is missing.

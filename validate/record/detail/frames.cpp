@@ -12,8 +12,8 @@
 namespace swingbank::validate::record {
 namespace {
 
-/// Returns the columns that are all zero in a lost frame. Empty without a voltage or a power, because zeros
-/// are then not conclusive.
+/// Returns the columns that are all zero in a lost frame. Empty if the record has no voltage, or neither
+/// power nor current, because zeros are then not conclusive.
 std::vector<RawColumn*> phasors_of(RawRecord& raw) {
   std::vector<RawColumn*> all;
   bool power = false, voltage = false;

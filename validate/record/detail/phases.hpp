@@ -10,8 +10,8 @@
 namespace swingbank::validate::record {
 
 /// Returns the meaning of "Va_mag", "VA_Ang (deg)", "IC_M", "PhA Voltage Magnitude" or "Vab_kV": magnitude or
-/// angle of one phase, or of a line-to-line voltage. The unit of a voltage to neutral is converted to a
-/// line-to-neutral unit. Returns no value for any other heading.
+/// angle of one phase, or of a line-to-line voltage. The unit kV or V of a voltage to neutral becomes
+/// kilovolt_ln or volt_ln. Returns no value for any other heading.
 std::optional<ColumnMeaning> phase_meaning(std::string_view heading, std::string_view unit);
 
 /// Clears the meaning of unneeded phase columns: incomplete sets, line-to-line voltages beside complete

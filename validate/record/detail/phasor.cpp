@@ -88,9 +88,10 @@ std::optional<SequenceFault> sequence_fault(const std::array<std::vector<Complex
   }
   return SequenceFault{
       "phase sequence is A-C-B", why,
-      fmt::format("exchange the names of {} and {}, because two leads are exchanged; if the grid has phase "
-                  "sequence A-C-B, exchange voltages and currents",
-                  names[1], names[2])};
+      fmt::format(
+          "exchange the names of {} and {}, because two leads are exchanged; if the grid has phase sequence "
+          "A-C-B, exchange these names for both voltages and currents",
+          names[1], names[2])};
 }
 
 }  // namespace swingbank::validate::record

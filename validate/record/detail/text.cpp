@@ -157,7 +157,7 @@ void refuse_binary(std::string_view bytes, const std::string& name) {
   const std::string_view head = bytes.substr(0, 4096);
   const auto nothing = std::ranges::count(head, '\0');
   if (4 * static_cast<std::size_t>(nothing) > head.size() && head.size() > 8)
-    refuse("a file in UTF-16, or no text at all", name, "every second byte is zero",
+    refuse("a file in UTF-16, or no text at all", name, "more than a quarter of the bytes are zero",
            "save it as CSV in UTF-8");
   if (nothing > 0)
     refuse("a binary file", name, "it contains zero bytes",

@@ -184,7 +184,7 @@ class Grid {
     const auto rate = 1 / h_;
     if (!twice_.empty())
       about.notes.push_back(
-          fmt::format("{} rows repeat the row before with its time stamp, the first at {}: ignored.",
+          fmt::format("{} rows repeat time stamp and values of the row before, the first at {}: ignored.",
                       twice_.size(), faults.where(twice_.front())));
     if (!stuck_.empty())
       about.notes.push_back(fmt::format(
@@ -254,7 +254,8 @@ bool varies(const std::vector<double>& t) {
   return std::ranges::none_of(steps, [](double s) { return s < 0; }) && differ(steps);
 }
 
-/// Resamples the rows at uniform times by linear interpolation, as in a playback. None if times decrease.
+/// Resamples the rows at uniform times by linear interpolation, as in a playback. None if times decrease or
+/// the clock stops.
 std::optional<EvenRows> resampled(const Rows& rows, Record& about) {
   constexpr std::array<double, 5> kRates = {30, 60, 120, 240, 480};
   const std::vector<double>& t = rows.t;

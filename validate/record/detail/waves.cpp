@@ -73,7 +73,8 @@ std::optional<Named> named_in(std::string_view id, bool voltage, const std::opti
     const auto phase = phase_of(text);
     return phase && (!known || *phase == *known) ? phase : std::nullopt;
   };
-  // A name such as "VBUS" contains a phase only if its phase is known.
+  // Without a known phase, "VBUS" is not phase B: only a digit or a last letter from w to z may follow the
+  // phase.
   const auto may_follow = [&](std::string_view rest) {
     return known || std::isdigit(static_cast<unsigned char>(rest[0])) || (rest.size() == 1 && rest[0] >= 'w');
   };
