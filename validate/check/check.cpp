@@ -49,7 +49,8 @@ class Check : Findings {
   }
 
  private:
-  /// Warns of reporting rates below 25/s, the second lowest rate of IEC/IEEE 60255-118-1 (2018, 5.2).
+  /// Warns of reporting rates below 25/s, the second lowest rate for 50 Hz in IEC/IEEE 60255-118-1 (2018,
+  /// 5.2).
   void rate() {
     constexpr double kSlowestRate = 24.5;
     if (r_.component != record::Component::plant || r_.rate() >= kSlowestRate) return;
@@ -141,11 +142,12 @@ class Check : Findings {
     const bool sagged = doubtful && !signals_.slow && std::abs(signals_.V.level - last_voltage()) > 0.08;
     if (few || sagged || moves > 0.02) {
       refuse("no_pre_event",
-             few      ? fmt::format("{:.3g} s before the event", before)
-             : sagged ? fmt::format("V = {:.3g} pu before the first step and {:.3g} pu at the end",
-                                    signals_.V.level, last_voltage())
-                      : fmt::format("P or Q moves by {:.2g} pu of the machine in the first {:.2g} s", moves,
-                                    static_cast<double>(looked_at) * r_.step()),
+             few ? fmt::format("{:.3g} s before the event", before)
+             : sagged
+                 ? fmt::format("V = {:.3g} pu before the first step and {:.3g} pu at the end of the record",
+                               signals_.V.level, last_voltage())
+                 : fmt::format("P or Q moves by {:.2g} pu of the machine in the first {:.2g} s", moves,
+                               static_cast<double>(looked_at) * r_.step()),
              "the model starts from the steady state before the event, which the record must contain",
              "export it from at least 1 s before the event");
       return false;

@@ -35,7 +35,8 @@ struct PlantFacts {
 PlantFacts plant_facts(const plant::PlantModel& model);
 
 /// Returns all findings about a record, refusals first. After a refusal, the record allows no verdict about
-/// the model. Accepts any Record with channels of equal length and does not throw because of its content.
+/// the model. Accepts any Record: faults of its content, such as channels of unequal length, become findings,
+/// not exceptions.
 std::vector<Finding> check_record(const record::Record& record, const PlantFacts& plant);
 
 /// Throws InputError with the refusals as its problems, if there are any.

@@ -195,10 +195,10 @@ std::string describe_fit(const EventComparison& e, bool tried, const std::string
 void explain(EventComparison& e, switching::StepShape step_shape, bool tried, const std::string& failed) {
   if (const auto filtered_count = std::ranges::count(e.left_out, 1) - std::ranges::count(e.record.lost, 1);
       step_shape == switching::StepShape::filtered && filtered_count > 0)
-    e.notes.push_back(
-        fmt::format("The instrument's filter smooths the steps over {} samples; these are neither played in "
-                    "nor compared, and {} fitted to P and Q.",
-                    filtered_count, e.detected ? "switching times and start were" : "the start was"));
+    e.notes.push_back(fmt::format(
+        "The instrument's filter smooths the steps over {} samples; these are neither played in "
+        "nor compared, and {} fitted to P and Q.",
+        filtered_count, e.detected ? "switching times and initial state were" : "the initial state was"));
   else if (e.detected && !e.switchings.empty())
     e.notes.push_back(
         fmt::format("The switching times were estimated from the record (each to ± {:.1f} ms); "
@@ -216,7 +216,7 @@ void explain(EventComparison& e, switching::StepShape step_shape, bool tried, co
     e.notes.push_back(fmt::format(
         "No voltage step was found; the first {:.3g} s are used as the steady state (--pre-event){}.",
         e.record.t[static_cast<std::size_t>(e.playback.start.samples - 1)] - e.record.t.front(),
-        tried && e.fitted ? ", and the initial point was adjusted within measurement noise" : ""));
+        tried && e.fitted ? ", and the initial operating point was adjusted within measurement noise" : ""));
   if (const std::string hint = quiet_end_hint(e); !hint.empty()) e.notes.push_back(hint);
   if (e.playback.start.drift != 0)
     e.notes.push_back(
@@ -413,7 +413,7 @@ EventComparison compare_event(const plant::PlantModel& model, const Measurement&
     if (!no_angle) play(model, PlaybackInput::voltage, options.play_in, e);
     const bool movable = e.detected || e.record.angle == record::AngleSource::integrated;
     if (!no_angle && movable && options.fit_switchings && (!e.switchings.empty() || !explained(e))) {
-      step("switching times and start are fitted", 1);
+      step("switching times and initial state are fitted", 1);
       try {
         if (EventComparison other = fitted(); is_closer(other, e)) e = std::move(other);
       } catch (const InputError& error) {  // the playback without a fit remains valid

@@ -46,11 +46,12 @@ struct FirstScreen {
   report::Tone tone = report::Tone::bad;  ///< colour of the headline
   const Played* before = nullptr;         ///< shown model; with `after`: the submitted one
   const Played* after = nullptr;          ///< changed model; null: none
-  bool judge_before = false;              ///< chips show the verdict on `before`; false: on `after`
+  bool judge_before = false;              ///< chips are coloured by the errors of `before`; false: of `after`
   EventUse use = {};                      ///< events of the fit and of its verification
   std::string next = {};                  ///< next command; empty: none
 };
-/// Adds headline, chips, P and Q of the worst event, and bars of the errors before and after.
+/// Adds the headline, a chip for each channel of each event (RMS error, coloured by its limits), P and Q of
+/// the worst event, and bars of the errors before and after.
 void first_screen(report::Document& document, const FirstScreen& screen);
 
 /// Returns the largest RMS / noise of all judged channels and its event; 0 and 0 if none has noise.

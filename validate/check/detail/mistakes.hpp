@@ -30,7 +30,7 @@ inline const std::vector<Mistake>& mistakes() {
        [](const Reading& x) {
          return Reading{x.V, x.theta, x.Q, x.P};
        }},
-      {"power_sign", "with P and Q positive out of the machine the steps are consistent",
+      {"power_sign", "with the signs of P and Q reversed the steps are consistent",
        "reverse the signs of P and Q with --columns (P=-NAME,Q=-NAME)",
        [](const Reading& x) {
          return Reading{x.V, x.theta, -x.P, -x.Q};

@@ -14,13 +14,13 @@ bool near(double x, double target, double share) { return std::abs(x - target) <
 
 std::vector<BaseSlip> base_slips(const record::Record& r, const PlantFacts& plant) {
   const double base = r.base.mva;
-  std::vector<BaseSlip> all{r.per_unit_power
-                                ? BaseSlip{1 / base, "P and Q are in MW and Mvar but were taken as pu",
-                                           "name the columns P_MW and Q_Mvar"}
-                                : BaseSlip{base, "P and Q are in pu but were taken as MW and Mvar",
-                                           "name the columns P_pu and Q_pu"},
-                            {1e3, "P and Q are off by 1000", "give P_MW and Q_Mvar"},
-                            {1e-3, "P and Q are off by 1000, like kW taken as MW", "give P_MW and Q_Mvar"}};
+  std::vector<BaseSlip> all{
+      r.per_unit_power ? BaseSlip{1 / base, "P and Q are in MW and Mvar but were taken as pu",
+                                  "name the columns P_MW and Q_Mvar"}
+                       : BaseSlip{base, "P and Q are in pu but were taken as MW and Mvar",
+                                  "name the columns P_pu and Q_pu"},
+      {1e3, "P and Q are too small by a factor of 1000", "give P_MW and Q_Mvar"},
+      {1e-3, "P and Q are too large by a factor of 1000, like kW taken as MW", "give P_MW and Q_Mvar"}};
   if (!r.per_unit_power) return all;  // MW and A do not depend on a base
   const std::string set = "set base_mva under [record] in the plant file to ";
   if (plant.mva > 0 && !near(plant.mva, base, 0.3))
@@ -50,8 +50,8 @@ std::optional<Doubt> base_doubt(const record::Record& r, const PlantFacts& plant
               "units",
         "write the machine's MVA"};
   }
-  const std::string what =
-      fmt::format("{:.4g} pu of the machine's {:g} MVA before the event", on_machine, plant.mva);
+  const std::string what = fmt::format(
+      "apparent power of {:.4g} pu of the machine's {:g} MVA before the event", on_machine, plant.mva);
   for (const BaseSlip& slip : base_slips(r, plant))
     if (slip.factor < 1 && on_machine * slip.factor >= 0.05 && on_machine * slip.factor <= 1.2)
       return Doubt{what, "likely " + slip.why, slip.remedy};
@@ -72,7 +72,7 @@ std::optional<Doubt> dispatch_doubt(const record::Record& r, const PlantFacts& p
       fmt::format("before the event P = {:.4g} MW and Q = {:.4g} Mvar, in the case {:.4g} MW and {:.4g} Mvar "
                   "(apparent power {:.2f} times the case's)",
                   here.real(), here.imag(), there.real(), there.imag(), ratio),
-      "the unit ran at another point than in the case, or the record is of another unit or base",
+      "the unit ran at another operating point than in the case, or the record is of another unit or base",
       "compare bus, unit and bases with the case"};
   if (is_ratio(1)) {
     doubt.why =
@@ -98,8 +98,9 @@ namespace {
 
 /// Returns dQ/d|V| at the voltage steps [pu/pu], the smallest of three estimates: the step of Q over the same
 /// interval as V, over one more sample after it, and over one more sample before it. Returns 0 unless all
-/// three are positive and exceed the noise. Behind E'' and X'', Q = V (E'' cos(delta) - V) / X''. Q falls
-/// where V rises if the sum of the two values of V exceeds E'', which is below 1.3 pu.
+/// three are positive and exceed the noise. At the terminals of a source E'' behind X'', Q = V (E''
+/// cos(delta) - V) / X''. Q falls where V rises if the sum of the two values of V exceeds E'', which is below
+/// 1.3 pu.
 double change_of_Q(const record::Record& r, const std::vector<switching::StepInterval>& steps, double noise) {
   constexpr double kLargestE = 1.3, kSure = 5;  // [pu], [standard deviations]
   double least = std::numeric_limits<double>::infinity();
