@@ -23,7 +23,8 @@ struct TestResult {
 struct BenchmarkInputs {
   const plant::PlantModel& model;              ///< model under test
   const plant::PlantModel* against = nullptr;  ///< reference model; null: the records are the reference
-  /// One for each test, recorded or generated_input(); not used in tests behind a grid impedance.
+  /// Record of each test, read from a file or from generated_input(); not used in tests behind a grid
+  /// impedance.
   const std::vector<record::Record>& records;
   std::optional<InitialPoint> initial = {};  ///< operating point of tests behind an impedance
   thresholds::Acceptance by;                 ///< limits

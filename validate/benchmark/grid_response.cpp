@@ -13,7 +13,7 @@ namespace {
 /// Impedances and sizes of a test on the base of the simulated plant.
 class OnPlantBase {
  public:
-  /// `mva`: base of the test over the plant's.
+  /// `mva`: base of the test over that of the simulated plant.
   OnPlantBase(const Test& test, double mva) : test_(test), mva_(mva) {}
 
   /// Returns the infinite bus's connection. The source has half the reactance, so that neither its reactance

@@ -154,7 +154,7 @@ TestSet read_set(Config& c) {
     p.Q = c.require<double>("operating_point.Q", {-2, 2, "pu of MVA", "reactive power out of the plant"});
     p.V = c.require<double>("operating_point.V", {0.1, 2, "pu", "voltage"});
     p.rate = c.require<double>("operating_point.rate",
-                               {.low = 30, .unit = "1/s", .meaning = "samples of a generated input"});
+                               {.low = 30, .unit = "1/s", .meaning = "sampling rate of a generated input"});
     set.initial = p;
   }
   if (c.has("test")) c.ignore("test");  // its keys are checked in read_test
@@ -264,14 +264,14 @@ void find_records(TestSet& set, const std::vector<std::string>& given, bool gene
           fmt::format("its input is generated from 0 s to the end of post, with {:g} samples per second "
                       "and at most {:g} samples",
                       set.initial->rate, kMostGenerated),
-          "lower rate in [operating_point], or let the event begin earlier");
+          "lower rate in [operating_point], or end the window post earlier");
     } else {
       check_generated_times(t, set.initial->rate, problems);
     }
   }
   for (const std::string& file : given)
     if (!used.contains(file))
-      problems.add("record " + file, "--records", "no test in the file has the name of this record",
+      problems.add("record " + file, "--records", "no test of the tests file has the name of this record",
                    "name it after a test, or add a test with record = \"" +
                        fs::path(file).filename().string() + "\" to " + set.file.string());
 }
@@ -287,7 +287,7 @@ void check_controls(const TestSet& set, const plant::PlantModel& model, Problems
                       : t.kind == TestKind::p_reference_step ? q.has_value() || has(sim::Slot::governor)
                                                              : true;
     if (!acts)
-      problems.add(fmt::format("test '{}' of the model {}", t.name, model.name), t.where,
+      problems.add(fmt::format("no control for test '{}' in the model {}", t.name, model.name), t.where,
                    fmt::format("{} has no control with that reference", model.origin),
                    "leave out the test, or add the control to the plant file");
   }
