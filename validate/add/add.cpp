@@ -174,21 +174,21 @@ hypothesis::Hypothesis find_hypothesis(const plant::PlantModel& model, const std
     throw InputError({"effect '" + name + "'", "swingbank add", "there is no effect of that name",
                       suggestion(name, names, remedy)});
   if (effect->switching_times)
-    throw InputError({"effect " + std::string(effect->name), "swingbank add",
+    throw InputError({"effect " + std::string(effect->name) + " cannot be added", "swingbank add",
                       "the effect acts at given times and therefore describes one event, not the plant",
                       "write it into the model file by hand"});
   if (effect->angle_lag && !recorded.integrated_angle)
-    throw InputError({"effect " + std::string(effect->name), "swingbank add",
+    throw InputError({"effect " + std::string(effect->name) + " cannot be added", "swingbank add",
                       "the effect delays an angle integrated from frequency, and no record has such an angle",
                       "add another effect"});
   const auto reader = sim::reader_of(effect->slot);
   if (reader && std::ranges::none_of(model.plant.controls,
                                      [&](const sim::plant::Block& b) { return b.effect->slot == *reader; }))
-    throw InputError({"effect " + std::string(effect->name), "swingbank add",
+    throw InputError({"effect " + std::string(effect->name) + " cannot be added", "swingbank add",
                       fmt::format("only the {} reads the effect's output, and the model has none",
                                   sim::slot_name(*reader)),
                       fmt::format("add the {} first", sim::slot_name(*reader))});
-  throw InputError({"effect " + std::string(effect->name), "swingbank add",
+  throw InputError({"effect " + std::string(effect->name) + " cannot be added", "swingbank add",
                     "no free place in slot " + std::string(sim::slot_name(effect->slot)),
                     "write \"" + std::string(effect->name) +
                         " in place of ...\" with the name of the present effect, or " + remedy});

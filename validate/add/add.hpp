@@ -44,7 +44,7 @@ struct Addition {
   /// criterion() of the fit without the effects minus that of the fit with all effects, over the seen events.
   double evidence = 0;
   /// Whether the evidence of each effect exceeds thresholds::addition.strong and no unseen event is worse
-  /// with them.
+  /// with them, unless it is within its limit.
   bool earns = false;
   bool adequate = false;           ///< whether the residual is noise in every event
   thresholds::Ruling ruling;       ///< the criterion that decided `adequate`
@@ -73,8 +73,8 @@ std::vector<std::string> effect_names(const std::vector<std::string>& texts);
 Addition add_effects(const plant::PlantModel& model, const std::vector<std::string>& names,
                      const std::vector<record::Record>& records, const AddOptions& options);
 
-/// Result of the removal of one control (index into Plant::controls): the control's evidence with everything
-/// else refitted, and the model without the control.
+/// Result of the removal of one control: the control's evidence with everything else refitted, and the model
+/// without the control.
 struct Removal {
   std::string effect;       ///< name of the removed effect
   plant::PlantModel model;  ///< model without it, refitted
@@ -82,7 +82,7 @@ struct Removal {
   /// is at most addition.stays.
   double evidence = 0;
 };
-/// Refits the model without one control.
+/// Refits the model without one control; `control`: index into Plant::controls.
 Removal try_without(const plant::PlantModel& model, std::size_t control, std::vector<record::Record> records,
                     const AddOptions& options);
 

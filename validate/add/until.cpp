@@ -11,8 +11,9 @@
 namespace swingbank::validate::add {
 namespace {
 
-/// Returns the effects that the diagnosis names. If it names none because more than one effect is missing,
-/// returns the hypothesis with the most evidence among those that improve every unseen event.
+/// Returns the effects that the diagnosis names. If it names none, more than one effect may be missing: then
+/// returns the hypothesis with the most evidence among those that improve every held-out event of the
+/// diagnosis.
 std::vector<std::string> next_effects(const diagnose::Diagnosis& d) {
   if (!d.effects.empty()) return d.effects;
   const auto helps = [](const hypothesis::Judgement& j) {

@@ -15,8 +15,8 @@ class Bench {
   [[nodiscard]] const noise::WhitenedEvents& all() const { return all_; }
   [[nodiscard]] const noise::WhitenedEvents& seen() const { return seen_; }
   [[nodiscard]] bool is_seen(std::size_t e) const { return !out_[e]; }
-  /// Measures the noise again through a fit to the seen events. Returns false and changes nothing if the
-  /// fit's reduced chi-square is too high.
+  /// Estimates the noise again from the residuals of a fit to the seen events. Returns false and changes
+  /// nothing if the fit's reduced chi-square is too high.
   bool measure_noise(const fit::Fit& seen, const sim::Conventions& conventions);
   /// Fits the state of every event by itself, at fixed parameters. Throws InputError if a playback fails.
   [[nodiscard]] std::vector<fit::EventFit> each(const sim::plant::PlantUnderTest& tested,

@@ -122,7 +122,8 @@ void JointFit::leave_out() {
   for (LeftOut& l : left_out_) l.fit = from_other(l.others, l.fit, a_.with);
 }
 
-/// If the fit with the effects is close, measures the noise again through this fit and repeats all fits.
+/// If the reduced chi-square of the fit with the effects is low enough, estimates the noise again from its
+/// residuals and repeats all fits.
 bool JointFit::measure_noise() {
   if (!bench_.measure_noise(a_.with, a_.hypothesis.conventions)) return false;
   const auto repeat = [&](const hypothesis::Hypothesis& h, fit::Fit& f) {
@@ -134,8 +135,8 @@ bool JointFit::measure_noise() {
   return true;
 }
 
-/// Frees one group of parameters that a single added effect has at null values by default: the group with the
-/// most evidence. Returns false if no group has the evidence that an effect needs.
+/// If a single effect is added, frees one group of its parameters that are at null values by default: the
+/// group with the most evidence. Returns false if no group has the evidence that an effect needs.
 bool JointFit::add_null_group() {
   if (names_.size() > 1) return false;
   auto groups = hypothesis::with_left_off(a_.hypothesis, a_.with.plant);
@@ -166,8 +167,8 @@ hypothesis::Judgement JointFit::best(const hypothesis::BaseModel& base,
   if (!j.fitted) until_interrupted([&] { hypothesis::fit_alone(base, j); });
   if (interruption_asked()) end();
   if (!j.fit.failed.empty())
-    throw InputError({"effect " + j.hypothesis.name + " cannot be fitted", "every start", j.fit.failed,
-                      "check the model's parameters, or add another effect"});
+    throw InputError({"effect " + j.hypothesis.name + " cannot be fitted from any start", "swingbank add",
+                      j.fit.failed, "check the model's parameters, or add another effect"});
   return j;
 }
 
@@ -224,8 +225,8 @@ fit::Fit JointFit::from_other(const hypothesis::Hypothesis& h, const fit::Fit& f
   return fit::better(j.fit, f) ? finished(j) : f;
 }
 
-/// Returns the fit completed with standard errors. Fits of the search have none, or those of lenient
-/// integration.
+/// Returns the fit completed with standard errors. Fits of the search have none, or those of an integration
+/// with relaxed tolerance.
 fit::Fit JointFit::finished(const hypothesis::Judgement& j) const {
   fit::Fit f =
       bench_.go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, base_model_.prior_sd), j.fit);

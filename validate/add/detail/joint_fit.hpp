@@ -22,7 +22,7 @@ class JointFit {
   JointFit(const JointFit&) = delete;
   JointFit& operator=(const JointFit&) = delete;
 
-  /// Makes the fits. Returns whether the noise was measured again. After an interruption, `with` is the best
+  /// Makes the fits. Returns whether the noise was estimated again. After an interruption, `with` is the best
   /// fit so far. Throws InputError if the effects cannot be fitted.
   bool run();
 
