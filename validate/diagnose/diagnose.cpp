@@ -139,9 +139,9 @@ class Diagnoser {
     std::ranges::move(others, std::back_inserter(result_.ranked));
     std::ranges::stable_sort(result_.ranked, std::greater<>(), &hypothesis::Judgement::gain);
   }
-  /// Measures the noise again through the leading hypothesis if the poor fit of the base model hides the
-  /// noise. Continues all fits with the new noise. A hypothesis whose fit then fails is dropped, because its
-  /// cost refers to the former noise. Returns whether the noise was measured.
+  /// Estimates the noise again from the residuals of the leading hypothesis if the poor fit of the base model
+  /// hides the noise. Continues all fits with the new noise. A hypothesis whose fit then fails is dropped,
+  /// because its cost refers to the former noise. Returns whether the noise was estimated again.
   bool measure_noise_again() {
     if (result_.ranked.empty() || result_.base.reduced_chi2() < thresholds::noise.measurable) return false;
     const hypothesis::Judgement& best = result_.ranked.front();

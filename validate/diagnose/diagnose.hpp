@@ -49,10 +49,12 @@ struct Diagnosis {
   reduced::FreeInput torque, field;  ///< each inferred without any added effect
   /// User-defined models, tried if no known effect explains the records.
   user_model_search::UserModelSearch user_models;
-  std::vector<hypothesis::Judgement> ranked;  ///< in descending order of evidence; accepted ones first
-  noise::WhitenedEvents events;               ///< events with the noise model of all fits
-  sim::Conventions conventions;               ///< conventions of the model
-  double seconds = 0;                         ///< elapsed time [s]
+  /// Accepted pairs, then accepted single effects, then the others; each group in descending order of
+  /// evidence.
+  std::vector<hypothesis::Judgement> ranked;
+  noise::WhitenedEvents events;  ///< events with the noise model of all fits
+  sim::Conventions conventions;  ///< conventions of the model
+  double seconds = 0;            ///< elapsed time [s]
 };
 
 /// Limits, effort and callbacks of a diagnosis.

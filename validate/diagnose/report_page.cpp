@@ -252,8 +252,8 @@ class DiagnosisPage {
         "{} effects were added one at a time. The most probable effects were fitted together with the "
         "model's parameters; the others were ranked by a preliminary estimate (marked “not "
         "fitted”). Evidence is 2 ln(Bayes factor) of the effect "
-        "(Laplace's approximation): {:.0f} or more is accepted; below 0 the added parameters do "
-        "not improve the model. The leading effects were then judged on held-out events.",
+        "(Laplace's approximation): acceptance requires {:.0f} or more; below 0 the added "
+        "parameters do not improve the model. The leading effects were then judged on held-out events.",
         d_.ranked.size(), thresholds::evidence.accepted.value));
     const double most = std::max(1.0, d_.ranked.front().gain);
     report::Bars bars{
@@ -381,7 +381,8 @@ class DiagnosisPage {
         "Playback of the recorded terminal voltage and angle into the model, with the response "
         "compared with the measurement for each event, as in model verification reports under NERC "
         "MOD-026-2 (formerly MOD-026-1 and MOD-027-1) and MOD-033 (systems). These standards set no numerical "
-        "tolerance. The verdicts use the limits of “Verdicts” and the joint 99.9 % noise limit of the error map. "
+        "tolerance. Fitness for purpose uses the limits of “Verdicts”, and the error map the joint 99.9 % "
+        "noise limit. "
         "The table of tolerances uses the 99 % band of the noise, estimated before each event.");
     page_.text(
         "“Refitted” means the submitted structure with its parameters fitted to all events; an "

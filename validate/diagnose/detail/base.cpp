@@ -13,10 +13,11 @@ namespace {
 
 /// Number of leading hypotheses from whose fits the given model is refitted.
 constexpr std::size_t kWaysOut = 2;
-/// Maximum number of fits for one noise measurement, if the given model nearly fits but has not converged.
+/// Maximum number of fits for one noise estimate, if the fit has not converged but its residual is nearly
+/// noise.
 constexpr int kBaseRounds = 4;
-/// Maximum number of noise measurements through a given model whose residual slightly exceeds noise. Noise of
-/// the voltage biases a fit, and a less biased fit gives another noise estimate.
+/// Maximum number of noise estimates from the residuals of the given model, if these slightly exceed noise.
+/// Noise of the voltage biases a fit, and a less biased fit gives another noise estimate.
 constexpr int kMeasured = 3;
 
 /// Returns whether further steps of the model's fit might reduce the residual to noise.
@@ -59,7 +60,7 @@ std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
 }
 
 /// Refits the model after the best change of a single parameter. Such a change can correct a wrong limit that
-/// is never reached. A fit alone does not change this limit, because its gradient is zero.
+/// is never reached. A fit alone does not change this limit, because the gradient with respect to it is zero.
 fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
   constexpr std::array kMultiples = {0.3, 0.5, 0.7, 0.85, 1.2, 1.4, 2.0, 3.3};
   const auto free = fit::free_parameters(base_model.plant, base_model.prior_sd);

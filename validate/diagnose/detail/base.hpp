@@ -1,5 +1,6 @@
 #pragma once
-// Fit of the given model without additions: its parameters, the noise measured through it, and better starts.
+// Fit of the given model without additions: its parameters, the noise estimated from its residuals, and
+// better starts.
 #include <optional>
 
 #include "validate/diagnose/diagnose.hpp"
@@ -10,7 +11,7 @@ namespace swingbank::validate::diagnose {
 /// Throws InputError if the fit of the given model failed.
 void require_fitted(const fit::Fit& base, const plant::PlantModel& model);
 
-/// Fits the given model from the start `from` and measures the noise through the fit; fills `base` and
+/// Fits the given model from the start `from` and estimates the noise from the residuals; fills `base` and
 /// `events` of `d`. Throws InputError if the model cannot be fitted.
 void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fit::FitOptions from,
               Diagnosis& d);
@@ -18,7 +19,8 @@ void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fi
 /// Returns a start from which the given model fits much better than in `d`; empty if none is found. First
 /// tries the fits of the leading hypotheses, which may have escaped from a poor local optimum. Then, if an
 /// inferred input explains more than any hypothesis, tries the best change of a single parameter. A limit
-/// that is never reached may be wrong, and a fit cannot correct it because its gradient is zero.
+/// that is never reached may be wrong, and a fit cannot correct it because the gradient with respect to the
+/// limit is zero.
 std::optional<fit::FitOptions> better_start(const hypothesis::BaseModel& base_model, const Diagnosis& d);
 
 }  // namespace swingbank::validate::diagnose

@@ -34,7 +34,8 @@ std::string wrong_name(const Diagnosis& d) {
   return fmt::format("{}, but wrong: {}", hypothesis::kNothingMissing, wrong_names(d));
 }
 /// Computes the probabilities of the explanations: the given model, the given model with a few wrong
-/// parameters, every effect that held-out events have not rejected, and none of these.
+/// parameters, every accepted effect, every fitted effect whose evidence is below the threshold of
+/// acceptance, and none of these.
 void weigh(Diagnosis& d) {
   std::vector<hypothesis::Explanation> all = {{hypothesis::kNothingMissing}};
   if (d.wrong) all.push_back({wrong_name(d), d.wrong_evidence});
@@ -121,7 +122,8 @@ std::string with_probabilities(std::span<const hypothesis::Explanation> some) {
         fmt::format("{}{} ({})", text.empty() ? "" : ", ", e.name, report::probability_text(e.probability));
   return text;
 }
-/// Returns this text for a set of explanations. Of a set with many pairs, it lists only the first ones.
+/// Returns the text of with_probabilities() for a set. Of a set with many pairs, it lists only the first
+/// ones.
 std::string set_text(std::span<const hypothesis::Explanation> set, bool pairs) {
   if (!pairs || set.size() <= kPairsInSentence) return with_probabilities(set);
   return fmt::format("{} and {} more", with_probabilities(set.first(kPairsInSentence)),
@@ -303,7 +305,7 @@ void settle(const user_model_search::Unexplained& judged, const event::Progress&
   d.side = t < f ? hypothesis::Side::mechanical : hypothesis::Side::excitation;
   d.sentence = fmt::format(
       "None of the {} known effects explains the records (reduced chi-square {:.2f} without, at best "
-      "{:.2f} with an effect). With an inferred {} it is {:.2f}; the report shows this time series.{}",
+      "{:.2f} with an effect). With an inferred {} it is {:.2f}; the report shows the inferred time series.{}",
       r.size(), d.base.reduced_chi2(), r.empty() ? d.base.reduced_chi2() : r.front().fit.reduced_chi2(),
       t < f ? "torque" : "field voltage", std::min(t, f), line_sentence(d));
   d.user_models = user_model_search::search_user_models(judged, progress);
