@@ -7,7 +7,8 @@
 
 namespace swingbank::validate::fleet {
 
-/// Format of plant.json; part of the hash of a plant's inputs, so that older results are computed again.
+/// Format of plant.json; part of the hash of a plant's inputs, so that results of an older format are
+/// computed again.
 inline constexpr const char* kPlantFormat = "swingbank-fleet-plant-4";
 
 /// Largest error of P and Q of the submitted model, and its verdict on fitness for purpose.
@@ -26,7 +27,7 @@ struct FleetRow {
   std::map<std::string, double> probabilities;  ///< of the explanations in the credible set
   std::string side;
   SubmittedError error;
-  double evidence = 0;  ///< 2 ln(Bayes factor) of the first effect; NaN: no effect was named
+  double evidence = 0;  ///< 2 ln(Bayes factor) of the leading accepted hypothesis; NaN: no effect was named
   double left = 0;      ///< normalised RMS of the refitted model without an effect
   double unseen_before = 0, unseen_after = 0;  ///< normalised RMS over held-out events; NaN: not judged
   double chance = 0;                           ///< probability from chance_of(); NaN: no effect was named
