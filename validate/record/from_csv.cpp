@@ -375,7 +375,7 @@ class CsvReader {
     for (const double clock : {1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 16777216.0, 1e8, 1e9})
       if (scale == 0 && most < clock && most >= 0.8 * clock) scale = 1 / clock;
     if (scale == 0 || most * scale > 1)
-      problems_.add(fmt::format("column '{}'", name), name_,
+      problems_.add(fmt::format("no unit for column '{}'", name), name_,
                     fmt::format("values of up to {:g}: the number of counts per second is unknown", most),
                     "name its unit, such as FRACSEC_us, or give the times in one column");
     if (most >= 1 && scale > 0) raw.time_resolution = scale;

@@ -5,8 +5,8 @@
 
 namespace swingbank::validate::record {
 
-/// Interpolation by a polynomial fitted to the values on both sides of a gap, with or without a step in the
-/// gap. The polynomial's degree minimises the Akaike criterion (corrected for few values). Too low a degree
+/// Interpolation by a polynomial fitted to the values on both sides of a gap, and the step in the gap, if
+/// any. The polynomial's degree minimises the Akaike criterion (corrected for few values). Too low a degree
 /// misses the curvature of a swing; too high a degree follows noise.
 struct Across {
   std::vector<double> inside;  ///< values in the gap

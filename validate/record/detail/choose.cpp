@@ -386,7 +386,8 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
                    "name it one of " + names_of(meaning->quantity) + ", or give the unit: --columns \"" +
                        std::string(word_of(meaning->quantity)) + "=" + name + " [unit]\"");
     else if (meaning->unit && needs_kv(meaning->quantity, *meaning->unit) && !(base.kv > 0))
-      problems.add(fmt::format("column '{}'", name), where, "the plant file has no base_kv under [record]",
+      problems.add(fmt::format("no base voltage for column '{}'", name), where,
+                   "the plant file has no base_kv under [record]",
                    "add base_kv under [record] in the plant file, or give per-unit values");
     const auto key = meaning->unit ? needs_base(meaning->quantity, *meaning->unit) : "";
     if (!key.empty() && !((meaning->quantity == Efd ? base.efd : base.ifd) > 0)) {
@@ -396,7 +397,7 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
             name, key, component_name(options.component)));
         continue;
       }
-      problems.add(fmt::format("column '{}'", name), where,
+      problems.add(fmt::format("no base value for column '{}'", name), where,
                    "the plant file does not state its value at 1 pu (air-gap line)",
                    fmt::format("add {} = … [{}] under [record] in the plant file, or give per-unit values",
                                key, meaning->quantity == Efd ? "V" : "A"));
@@ -404,7 +405,8 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
     const bool again = used[q] && !meaning->phase;
     used[q] = true;
     if (again || (meaning->phase && !phases.emplace(q, meaning->phase->number).second))
-      problems.add(fmt::format("column '{}'", name), where, "another column gives the same quantity",
+      problems.add(fmt::format("repeated quantity in column '{}'", name), where,
+                   "another column gives the same quantity",
                    "keep only one of " + names_of(meaning->quantity) + ", or choose one with --columns");
     chosen.push_back(i);
   }

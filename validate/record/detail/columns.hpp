@@ -1,6 +1,5 @@
 #pragma once
-// Meaning of column names: quantity and unit. These tables are the source of the documentation
-// (validate/record/README.md).
+// Meaning of column names: quantity and unit. validate/record/README.md explains the columns.
 #include <optional>
 #include <string>
 #include <string_view>

@@ -61,8 +61,8 @@ const RawColumn& first_of(const Three& columns) {
 }
 
 [[noreturn]] void refuse_unit(const RawColumn& column, const std::string& file, const std::string& why) {
-  throw InputError({fmt::format("column '{}'", column.name), file, "its unit is missing, and " + why,
-                    "name it with its unit, as in Va_kV, Va_deg, Ia_A"});
+  throw InputError({fmt::format("no unit for column '{}'", column.name), file,
+                    "its unit is missing, and " + why, "name it with its unit, as in Va_kV, Va_deg, Ia_A"});
 }
 
 class Combination {
