@@ -1,7 +1,6 @@
 #pragma once
-// Alternative interpretations of a record, tested by playback: mirrored angle, delayed or exchanged P and Q,
-// power of one phase, other signs. An interpretation that fits much better is reported; the record is not
-// changed.
+// Alternative interpretations of a record, tested by playback: other signs, delayed or exchanged P and Q,
+// power of one phase. An interpretation that fits much better is reported; the record is not changed.
 #include <optional>
 
 #include "validate/check/check.hpp"

@@ -23,8 +23,8 @@ struct SignalFacts {
 struct Signals {
   SignalFacts V, P, Q;        ///< statistics of each channel
   bool event = false;         ///< the record contains an event
-  bool slow = false;          ///< event without a step; it began before `onset`
-  std::size_t onset = 0;      ///< last sample before the event
+  bool slow = false;          ///< event without a step, which begins before it is detected
+  std::size_t onset = 0;      ///< last sample before the event, or before its detection if `slow`
   std::size_t last = 0;       ///< last sample before the last switching, or `onset`
   double theta_level = 0;     ///< median of the angle before the event, as written [rad]
   double first_angle = 0;     ///< angle of the first sample, as written [rad]

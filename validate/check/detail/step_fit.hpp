@@ -12,8 +12,9 @@ namespace swingbank::validate::check {
 
 /// Least-squares fit of the steps to dV = -jX dI.
 struct StepFit {
-  double reactance = 0;  ///< X [pu on the record's base], current out of the machine; X'' in a sound record
-  double residual = 1;   ///< residual share of sum |dV|^2: below 0.03 plus noise in sound records
+  double reactance =
+      0;  ///< X [pu on the record's base]; equals X'' in a sound record with the current out of the machine
+  double residual = 1;              ///< residual share of sum |dV|^2: below 0.03 plus noise in sound records
   double voltage = 0, current = 0;  ///< mean |dV|^2 and |dI|^2 of a step [pu^2]
 };
 /// Fits the steps with P and Q taken `delay` samples later than the voltage. Returns NaN if voltage or
