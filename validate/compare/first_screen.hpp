@@ -60,8 +60,8 @@ std::pair<double, std::size_t> largest_rms_over_noise(const Played& played);
 /// first two.
 std::pair<std::size_t, std::vector<std::string>> worst_event(const Played& played);
 
-/// Returns the chart of one channel: the measured curve, and the simulated curve of each model in its ink.
-/// The chart has no series if no model has the channel.
+/// Returns the chart of one channel: the measured curve, and the simulated curve of each model with its line
+/// style (Ink). The chart has no series if no model has the channel.
 report::Curves channel_curves(const std::vector<std::pair<const Played*, report::Ink>>& models,
                               std::size_t event, const std::string& channel);
 /// Returns the id of the chart of a channel.

@@ -22,7 +22,7 @@ struct PageParameter {
 
 /// Errors of the last model with their limits, and the verdict on each other model.
 void limits_part(report::Document& page, const std::vector<Played>& played);
-/// Panels of each event, folded: V, f, P and Q, measured and simulated by each model; then other recorded
+/// Charts of each event, collapsed: V, f, P and Q, measured and simulated by each model; then other recorded
 /// channels. P and Q of the worst event are omitted, because the first screen shows them.
 void panels_part(report::Document& page, const std::vector<Played>& played);
 /// Table of parameters: before, after, 95 % interval. Without intervals (compare): the model's values.
