@@ -36,7 +36,7 @@ inline bool has_limits(const std::string& channel) { return channel == "P" || ch
 /// Returns the name of a window: "pre", "during" or "post".
 std::string_view window_name(thresholds::Phase phase);
 
-/// Plays voltage and angle of each test's record into the model, and reference steps into its controls.
+/// Plays voltage and angle of each test's record into the model, and applies reference steps to its controls.
 /// Computes the errors of the response in the windows pre, during and post. The times of the event are known
 /// and exact; the operating point is the mean before the event. If the angle was integrated from a frequency,
 /// its phase jumps at the event are fitted to P and Q. In a test behind a grid impedance both models are
