@@ -28,7 +28,7 @@ struct AddedEvent {
 struct AddedEffect {
   std::string name;     ///< "SEXS"
   std::string what;     ///< "exciter SEXS (simplified excitation system)"
-  double evidence = 0;  ///< evidence over the model with only the other effects, refitted
+  double evidence = 0;  ///< 2 ln(Bayes factor) over the refitted model with only the other effects
 };
 
 /// Result of an addition.

@@ -336,7 +336,7 @@ class DiagnosisPage {
     page_.add(table);
   }
 
-  /// Adds the inferred inputs and the error map of one event, folded.
+  /// Adds the inferred inputs and the error map of one event, collapsed.
   void event(std::size_t index) {
     const ReportEvent& e = figures_.events[index];
     const record::Record& r = e.event->record;
