@@ -12,8 +12,7 @@ namespace swingbank::validate::check {
 
 /// Least-squares fit of the steps to dV = -jX dI.
 struct StepFit {
-  double reactance =
-      0;  ///< X [pu on the record's base]; equals X'' in a sound record with the current out of the machine
+  double reactance = 0;             ///< X [pu on the record's base]; X'' in a sound record
   double residual = 1;              ///< residual share of sum |dV|^2: below 0.03 plus noise in sound records
   double voltage = 0, current = 0;  ///< mean |dV|^2 and |dI|^2 of a step [pu^2]
 };
