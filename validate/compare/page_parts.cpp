@@ -106,7 +106,8 @@ void event_panels(report::Document& page, const std::vector<Played>& played, std
                          fmt::format("Event {}: {}, {}", event + 1, e.record.name, event_title(e))});
   const auto begins = record::beginning(e.record);
   page.text(fmt::format(
-      "{}{} samples at {:.6g} per second. Switching: {}. Start: P = {:.2f} MW, Q = {:.2f} Mvar, V = {:.4f} pu.",
+      "{}{} samples at {:.6g} per second. Switching: {}. Operating point: P = {:.2f} MW, Q = {:.2f} Mvar, "
+      "V = {:.4f} pu.",
       begins.empty() ? "" : "t = 0 is " + begins + ". ", e.record.samples(), e.record.rate(),
       switching_times_text(e), e.playback.start.P * e.record.base.mva, e.playback.start.Q * e.record.base.mva,
       std::abs(e.playback.start.voltage)));

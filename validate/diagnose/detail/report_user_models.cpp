@@ -90,9 +90,9 @@ void user_models_on_page(const Diagnosis& d, report::Document& page) {
   page.section("User-defined model");
   page.text(
       fmt::format("No known effect explains the records. The charts show the {} over time and against "
-                  "every possible input signal. {} model structures were ranked by their fit to it "
-                  "(proportional, lag, washout, limit, dead band, polynomial, periodic, or triggered by "
-                  "time or by voltage). The leading {} were fitted to the records. A user-defined "
+                  "every possible input signal. {} model structures (proportional, lag, washout, limit, dead "
+                  "band, polynomial, periodic, or triggered by time or by voltage) were ranked by "
+                  "regression on this input. The leading {} were fitted to the records. A user-defined "
                   "model is accepted only if it predicts held-out events.",
                   input_name(s), s.ranked.size(), s.findings.size()));
   if (const user_model_search::UserModelFinding* f = s.found())
