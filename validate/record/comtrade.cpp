@@ -320,7 +320,7 @@ namespace {
 /// Resamples the waveforms of a recorder whose rate follows the grid frequency. They are interpolated at
 /// uniform times by cubic polynomials. Returns false if the rates differ by more than 2 %.
 bool put_onto_mean_rate(Comtrade& c) {
-  constexpr double kDrawn = 0.02;  // relative; no grid's frequency deviates further
+  constexpr double kDrawn = 0.02;  // relative; above the frequency deviation of any grid
   const auto [low, high] = std::ranges::minmax(c.stretches, {}, &ComtradeStretch::rate);
   const std::size_t n = c.t.size();
   if (high.rate > low.rate * (1 + kDrawn) || n < 4) return false;

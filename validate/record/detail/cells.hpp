@@ -25,8 +25,8 @@ struct Number {
 /// "339.515,0", "1 234,5".
 Number parse_number(std::string_view cell, char separator);
 
-/// Returns whether a cell denotes a missing value. Such cells contain a word in one of seven languages, a
-/// word of a data historian, or neither letters nor digits.
+/// Returns whether a cell denotes a missing value. Such cells contain a word for it in one of seven
+/// languages, such a word of a data historian, or neither letters nor digits.
 bool says_missing(std::string_view cell);
 /// Returns whether a cell is a word rather than an invalid number.
 bool is_word(std::string_view cell);

@@ -1,5 +1,5 @@
-// Choice of a file's columns: by the user's names, by their headings, from one terminal or two complementary
-// ones.
+// Choice of a file's columns: by the user's column map, by their headings, from one terminal or two
+// complementary ones.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -112,7 +112,8 @@ class Grid {
  public:
   Grid(const Rows& rows, const std::vector<double>& t, double step) : rows_(rows), t_(t), h_(step) {}
 
-  /// `first_row`: start of the grid; earlier rows are left out.
+  /// Returns the rows on a grid that starts at `first_row`, without earlier rows; none if they do not fit a
+  /// grid.
   std::optional<EvenRows> fit(std::size_t first_row, Record& about, SampleFaults& faults) {
     if (!count(first_row)) return std::nullopt;
     const auto last = static_cast<double>(index_.back());
