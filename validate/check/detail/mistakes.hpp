@@ -40,8 +40,9 @@ inline const std::vector<Mistake>& mistakes() {
          return Reading{x.V, x.theta * constants::degree, x.P, x.Q};
        },
        0.015, 0.1},  // an angle that hardly steps fits in either unit
-      // Steps of V mask an angle that is 57 times too small, so the limit `sound` is low. A low limit is
-      // safe, because an angle that is 57 times too large fits no sound record.
+      // If the angle is 57 times too small, the steps of V alone give a low residual, so the limit `sound` is
+      // low. This is safe: the correction makes the angle of a sound record 57 times too large, which never
+      // fits.
       {"angle_unit", "with theta in radians the steps are consistent", "name the column theta_rad",
        [](const Reading& x) {
          return Reading{x.V, x.theta / constants::degree, x.P, x.Q};
