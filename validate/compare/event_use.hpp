@@ -11,7 +11,7 @@ struct EventUse {
   std::vector<std::string> held_out = {};  ///< names of the records excluded from the fit
   /// Returns the use of a record: "comparison", "fit" or "verification".
   [[nodiscard]] std::string of(const std::string& record) const;
-  /// Returns a sentence with the number of fitted events and the names of the events that verify the fit, if
+  /// Returns a sentence with the number of events of the fit and the names of the events that verify it, if
   /// any; empty without a fit.
   [[nodiscard]] std::string sentence(const std::vector<std::string>& records) const;
 };

@@ -20,7 +20,7 @@ using report::Ink;
 
 std::string number_text(double v) { return std::isfinite(v) ? fmt::format("{:.4g}", v) : "–"; }
 
-/// Models with a playback of the event, and their inks; the first model provides the measured curves.
+/// Models with a playback of the event, and their line styles; the first model provides the measured curves.
 using Models = std::vector<std::pair<const Played*, Ink>>;
 Models models_of(const std::vector<Played>& played, std::size_t event) {
   Models models;

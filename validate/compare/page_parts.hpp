@@ -1,6 +1,6 @@
 #pragma once
 // Parts that the reports of all commands share. Their order is: first screen, limits, usability, error maps,
-// hypotheses, panels of the events, model information, parameters, errors, glossary, signatures, provenance.
+// hypotheses, charts of the events, model information, parameters, errors, glossary, signatures, provenance.
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
-// Playback of a record with fitted switching times and start. A record does not determine when between two
-// samples the network switched, and a few milliseconds change the rotor swing.
+// Playback of a record with fitted switching times and initial state. A record does not determine when
+// between two samples the network switched, and a few milliseconds change the rotor swing.
 #include "validate/compare/compare.hpp"
 #include "validate/noise/whitened_events.hpp"
 

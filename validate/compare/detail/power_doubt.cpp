@@ -46,7 +46,7 @@ class PowerDoubt {
     }
   }
   /// Adds the uncertainty between a switching and its adjacent samples, where P and Q are extrapolated. It is
-  /// estimated from the error when an adjacent sample is itself extrapolated from the samples behind it.
+  /// estimated from the error when an adjacent sample is itself extrapolated from the samples beyond it.
   void beside_switchings(std::vector<double> record::Record::*power) {
     constexpr double kOfStep =
         0.3;  // RMS over the switching's position, as a fraction of the error over a whole interval
