@@ -176,7 +176,8 @@ playin::Playback play_record(const Test& t, const BenchmarkInputs& in, const Rec
   const playin::VoltageCurve curve(prepared.record, prepared.switchings);
   const auto play = [&](const plant::PlantModel& model) {
     Record input = prepared.record;
-    // A step of the reference of Q is in pu of the plant's MVA, and sized for the model under test.
+    // The step of the Q reference is in pu of the MVA of the model under test, so it is converted for the
+    // reference model.
     if (t.kind == TestKind::q_reference_step)
       for (record::StagedEvent& step : input.staged) step.size *= in.model.plant.mva / model.plant.mva;
     return playin::play_in(model.under_test(), input, curve);

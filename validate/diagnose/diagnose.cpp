@@ -87,7 +87,7 @@ class Diagnoser {
       const auto better = round < kBases ? better_start(base_model, result_) : std::nullopt;
       if (!better) break;
       from = *better;
-      result_.events = prepared;  // discards the noise measured through the worse base model
+      result_.events = prepared;  // discards the noise estimated with the worse base model
     }
     try_replacements();
     return !stopped();
@@ -374,8 +374,8 @@ class Diagnoser {
               pair.gain - single.gain < thresholds::evidence.second);
     });
   }
-  /// Judges the hypotheses within reach of the best one, and puts accepted ones first. Judges at least three
-  /// hypotheses if none is accepted.
+  /// Judges the hypotheses whose evidence is within evidence.within_reach of the best one, and puts accepted
+  /// ones first. Judges at least three hypotheses if none is accepted.
   void judge_leading(std::vector<hypothesis::Judgement>& tried) const {
     if (tried.empty()) return;
     const int most = std::min(options_.leading, static_cast<int>(tried.size()));

@@ -9,9 +9,9 @@ namespace swingbank::validate::fleet_plant {
 
 /// Returns an upper bound of the probability that noise alone reduces the penalised chi-square by `fall` for
 /// any of `hypotheses` wrong hypotheses. Twice the log likelihood ratio of `added` superfluous parameters is
-/// chi-square distributed (Wilks). For two structures with the same number of parameters, this quantity
-/// exceeds g with a probability of at most exp(-g/2). This probability is multiplied by the number of
-/// hypotheses (Bonferroni). The bound does not cover instrument errors or an incomplete list of hypotheses.
+/// chi-square distributed (Wilks). For two structures with the same number of parameters, it exceeds g with a
+/// probability of at most exp(-g/2). The probability is multiplied by the number of hypotheses (Bonferroni).
+/// The bound does not cover instrument errors or an incomplete list of hypotheses.
 double chance_of(double fall, int added, int hypotheses);
 
 /// Result of one plant.
