@@ -376,7 +376,8 @@ void make_even(Comtrade& c, double min_rate, Problems& problems) {
     const double ratio = all[i].rate / low;
     if (i >= from && i < to && all[i].rate == low) anchor = all[i].first;
     if (i >= from && i < to && std::abs(ratio - std::round(ratio)) > 1e-6 * ratio)
-      problems.add(fmt::format("sampling rates of {:g} and {:g} per second", all[i].rate, low), c.file,
+      problems.add(fmt::format("incompatible sampling rates of {:g} and {:g} per second", all[i].rate, low),
+                   c.file,
                    "the higher rate is not a multiple of the lower one, so no uniform sampling exists",
                    "export the record with a single rate");
   }
@@ -417,7 +418,7 @@ Comtrade parse_cff(std::string_view cff, const std::string& name) {
   std::string cfg_heading, dat_heading;
   const std::string_view cfg = section(cff, "CFG", cfg_heading), dat = section(cff, "DAT", dat_heading);
   if (cfg_heading.empty() || dat_heading.empty())
-    throw InputError({"no record", name,
+    throw InputError({"no section CFG or DAT", name,
                       "a .cff holds the sections '--- file type: CFG ---' and '--- file type: DAT'",
                       "export it again, or give .cfg and .dat"});
   return parse_comtrade(cfg, dat, name + " (CFG)", name + " (DAT)");

@@ -131,7 +131,7 @@ Record stretch(Record r, double from, double until) {
   if (first == 0 && last == r.t.size()) return r;
   const std::size_t kept = last > first ? last - first : 0;
   if (kept < kMinSamples)
-    throw InputError({fmt::format("{} samples", kept), r.name,
+    throw InputError({fmt::format("only {} samples", kept), r.name,
                       fmt::format("the selected time range contains fewer than {} samples", kMinSamples),
                       "give an earlier --from or a later --until"});
   if (const double length = r.t[last - 1] - r.t[first]; length < kShortestRecord)

@@ -439,7 +439,7 @@ Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& op
   const EvenRows rows = settle(raw, options, r, faults);
   faults.report(problems, file);
   if (rows.place.size() < kMinSamples)
-    problems.add(fmt::format("{} samples", rows.place.size()), file,
+    problems.add(fmt::format("only {} samples", rows.place.size()), file,
                  fmt::format("a record needs at least {} samples", kMinSamples), "give a longer record");
   else if (const double length = rows.t.back() - rows.t.front(); length > 0 && length < kShortestRecord)
     problems.add(fmt::format("{:.3g} s is too short", length), file,

@@ -105,7 +105,7 @@ bool check_clock(const std::vector<double>& t, const ColumnMeaning& time, const 
     });
     if (other != smaller.end() && time.unit == Unit::second)
       problems.add(
-          fmt::format("steps of {:.4g} s", step), file,
+          fmt::format("time steps of {:.4g} s", step), file,
           fmt::format("no swing is visible at {:.3g} samples/s; with times in {} the rate would be {:.4g} "
                       "samples/s",
                       1 / step, other->name, 1 / (step * other->factor)),

@@ -77,7 +77,7 @@ class Config {
           "The configuration states revision {:.0f}, which does not exist; it was read as revision {}.", year,
           c_.about.revision));
     if (c_.about.revision == 0)
-      fault(fmt::format("revision '{}'", f[2]), "1991, 1999 and 2013 are read",
+      fault(fmt::format("revision '{}'", f[2]), "the known revisions are 1991, 1999 and 2013",
             "export it as COMTRADE 1999 or 2013");
     return c_.about.revision != 0;
   }
@@ -200,7 +200,7 @@ class Config {
     const auto& k = c_.about.kind;
     const bool wide = k == "BINARY32" || k == "FLOAT32";
     if (k != "ASCII" && k != "BINARY" && !wide)
-      fault(fmt::format("data type '{}'", k), "there are ASCII, BINARY, BINARY32 and FLOAT32",
+      fault(fmt::format("data type '{}'", k), "the known types are ASCII, BINARY, BINARY32 and FLOAT32",
             "export the data again");
     if (wide && c_.about.revision < 2013)
       c_.about.notes.push_back(

@@ -133,7 +133,7 @@ class Playback {
     else if (base_.kv > 0 && std::abs(v / base_.kv / 1e3 - 1) < 0.4)
       unit = Unit::volt;
     if (!unit)
-      problems_.add(fmt::format("voltages about {:.4g}", v), name_,
+      problems_.add(fmt::format("voltages of about {:.4g}", v), name_,
                     "the voltages are neither near 1 pu nor near base_kv",
                     "set base_kv (line to line) under [record] in the plant file");
     raw.about.notes.push_back(
@@ -151,7 +151,7 @@ class Playback {
     if (std::abs(f / base_.frequency - 1) < 0.25) unit = Unit::hertz;
     const bool deviation = std::abs(f) < 0.05;
     if (!unit)
-      problems_.add(fmt::format("frequencies about {:.4g}", f), name_,
+      problems_.add(fmt::format("frequencies of about {:.4g}", f), name_,
                     fmt::format("the frequencies are neither in pu nor near {:g} Hz", base_.frequency),
                     "check the column and frequency_hz in the plant file");
     raw.about.notes.push_back(fmt::format("The frequency, about {:.4g}, was taken to be {}.", f,

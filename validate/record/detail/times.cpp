@@ -194,7 +194,7 @@ class Grid {
           stuck_.size(), faults.where(stuck_.front())));
     if (!off_.empty())
       about.notes.push_back(fmt::format(
-          "{} {} fit the uniform sampling (step {:.6g} s), the first at {} (t = {:.6g} s): ignored.",
+          "{} {} fit the uniform sampling (interval {:.6g} s), the first at {} (t = {:.6g} s): ignored.",
           off_.size(), off_.size() == 1 ? "row does not" : "rows do not", h_, faults.where(off_.front()),
           t_[off_.front()]));
     if (coarse())
@@ -342,7 +342,7 @@ void report_uneven_steps(const Rows& rows, SampleFaults& faults) {
                  "sort the record and remove repeated lines");
     } else if (usual > 0 && !repeated && std::abs(steps[k] - usual) > slack) {
       const double missing = std::round(steps[k] / usual) - 1;
-      faults.add("step", fmt::format("a step of {:.6g} s", steps[k]), k + 1,
+      faults.add("step", fmt::format("a time step of {:.6g} s", steps[k]), k + 1,
                  fmt::format("elsewhere samples are {:.6g} s apart", usual) +
                      (missing >= 1 ? fmt::format("; {:.0f} missing", missing) : ""),
                  "fill gaps at the source, and give times with at least 5 decimals");
