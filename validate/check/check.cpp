@@ -68,7 +68,7 @@ class Check : Findings {
   bool complete() {
     const std::size_t n = r_.t.size();
     if (r_.samples() < record::kMinSamples)
-      refuse("too_short", fmt::format("{} samples", n),
+      refuse("too_short", fmt::format("only {} samples", n),
              fmt::format("at least {} are needed", record::kMinSamples), "give a longer record");
     else if (const double length = r_.t.back() - r_.t.front(); length < kShortestChecked)
       refuse("too_short", fmt::format("{:.3g} s is too short", length),
@@ -192,8 +192,8 @@ class Check : Findings {
             std::string("quantised_") + name,
             fmt::format("{} has a quantisation step of {:.3g} pu", name, step),
             *name == 'V'
-                ? "a transducer or an archive has rounded V; with a voltage regulator the error acts "
-                  "slowly, and the residual of a correct model may exceed noise"
+                ? "a transducer or an archive has rounded V; a voltage regulator turns the rounding error "
+                  "into a slow response, so the residual of a correct model may exceed noise"
                 : "a transducer or an archive has rounded it; the noise is taken to be at least the quantisation noise",
             "export it with more digits if possible");
   }
