@@ -133,8 +133,8 @@ std::vector<std::string> provenance_lines(const Addition& a, const plant::PlantM
   std::vector<std::string> lines = {
       fmt::format("{} added by swingbank {} on {:%Y-%m-%d %H:%M} UTC.", a.hypothesis.what, SWINGBANK_VERSION,
                   fmt::gmtime(std::time(nullptr))),
-      "Command: " + command_line, fmt::format("To the model {} (SHA-256 {}).", from.origin, from.sha256),
-      "Fitted to: " + fitted};
+      "Command: " + command_line,
+      fmt::format("Added to the model {} (SHA-256 {}).", from.origin, from.sha256), "Fitted to: " + fitted};
   if (!unseen.empty()) lines.push_back("Held-out events: " + unseen);
   lines.push_back(a.sentence);
   return lines;

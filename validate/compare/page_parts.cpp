@@ -270,7 +270,7 @@ void glossary_part(report::Document& page) {
       {"term", "definition"},
       {{"RMS", "Root mean square of modelled − measured over all samples that are compared."},
        {"noise σ",
-        "Standard deviation of modelled − measured before the event, of the model that is played. RMS / noise is "
+        "Standard deviation of modelled − measured before the event, of the shown model. RMS / noise is "
         "the quotient of the two."},
        {"normalised RMS",
         "Root mean square of the residual's components (frequencies in the error map, whitened "

@@ -249,11 +249,12 @@ class DiagnosisPage {
     if (d_.ranked.empty()) return;
     page_.section("Hypotheses");
     page_.text(fmt::format(
-        "{} effects were added one at a time. The most probable effects were fitted together with the "
-        "model's parameters; the others were ranked by a preliminary estimate (marked “not "
+        "{} hypotheses (added or replaced effects, freed parameters, other conventions) were "
+        "tried, each alone or as a pair of effects. The most probable ones were fitted together "
+        "with the model's parameters; the others were ranked by a preliminary estimate (marked “not "
         "fitted”). Evidence is 2 ln(Bayes factor) of the effect "
         "(Laplace's approximation): acceptance requires {:.0f} or more; below 0 the added "
-        "parameters do not improve the model. The leading effects were then judged on held-out events.",
+        "parameters do not improve the model. The leading hypotheses were then judged on held-out events.",
         d_.ranked.size(), thresholds::evidence.accepted.value));
     const double most = std::max(1.0, d_.ranked.front().gain);
     report::Bars bars{
