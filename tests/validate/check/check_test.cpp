@@ -277,7 +277,8 @@ TEST(RecordCheckTest, AcceptsEventsWithoutSwitching) {
   for (double& v : coarse.V) v = 5e-4 * std::round(v / 5e-4);
   for (std::size_t k = 0; k < coarse.V.size(); ++k) coarse.V[k] += 5e-4 * static_cast<double>(k % 2);
   const std::string of_voltage = findings_text(check_record(coarse, {100, 60}));
-  EXPECT_THAT(of_voltage, testing::HasSubstr("a voltage regulator turns the rounding error into a slow response"));
+  EXPECT_THAT(of_voltage,
+              testing::HasSubstr("a voltage regulator turns the rounding error into a slow response"));
 }
 TEST(RecordCheckTest, DoesNotCheckIntegratedAngle) {
   record::Record r = example(1);
