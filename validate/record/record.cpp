@@ -119,7 +119,8 @@ Record read_staged(const Source& source, const RecordBase& base, ReadOptions opt
   if (r.speed.empty() && !r.f.empty()) {
     r.speed = r.f;
     r.notes.emplace_back(
-        "The frequency is used as the speed, because the breaker opens and no speed is recorded.");
+        "The frequency is used as the speed: no speed is recorded, and the breaker is open or "
+        "opens.");
   }
   return r;
 }
