@@ -63,9 +63,9 @@ finished=$(wc -l <"$work/small/data/journal.jsonl")
 [[ $(find "$work/small/data/shards" -name 'shard-??????.h5' | wc -l) == "$finished" ]] || fail "a shard that is not in the journal"
 mount -o remount,size=20m "$work/small"
 make_data "$config" "$work/small/data" >/dev/null 2>&1
-whole "$work/small/data" || fail "it did not go on after the full disk"
+whole "$work/small/data" || fail "the run did not continue after the full disk"
 diff <(cut -d, -f1-5 "$data/journal.jsonl" | sort) <(cut -d, -f1-5 "$work/small/data/journal.jsonl" | sort) ||
-  fail "the dataset differs from one that never met a full disk"
+  fail "the dataset differs from that of a run without a full disk"
 
 mount -o remount,ro "$work/small"
 refuses "read-only disk" "$work/small" make_data "$config" "$work/small/more"

@@ -57,7 +57,7 @@ mxe = 0.5
 me = 0.5
 mae = 0.5
 TOML
-benchmark --model right.toml --records dip.csv vref.csv --accept narrow.toml --out same >said || fail "its own run: $(cat said)"
+benchmark --model right.toml --records dip.csv vref.csv --accept narrow.toml --out same >said || fail "the right model against its own record: $(cat said)"
 grep -q '^2 of 2 tests are within the limits narrow' said || fail "no verdict: $(cat said)"
 
 # another inertia: the errors equal those computed here from the samples, exit code 3
@@ -136,7 +136,7 @@ moved = [abs(float(r["P_reference_pu"]) - 0.4) for r in curves]
 assert moved[0] < 1e-9 and max(moved) > 0.1
 PYTHON
 "$swingbank" benchmark --model right.toml --against right.toml --tests "$SWINGBANK_SOURCE/configs/benchmark/synchronous.toml" \
-  --out standard >said 2>&1 && fail "a plant without a governor passes a step of its reference"
+  --out standard >said 2>&1 && fail "a plant without a governor passes the test of the power reference"
 grep -q "test 'p_reference_step'.*no control with that reference" said || fail "not refused: $(cat said)"
 
 # a converter: the shipped set, with its active and reactive current

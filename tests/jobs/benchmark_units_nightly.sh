@@ -42,7 +42,7 @@ benchmark() {
   python3 "$SWINGBANK_SOURCE/tests/jobs/benchmark_units.py" "$swingbank" "$raw" "$work/true.dyr" "$work" "$2" || fail "$unit: no records"
   "$swingbank" compare --model "$work/true.toml" --records "$work"/event*.csv --out "$work/compare" >"$work/said" 2>&1 || code=$?
   ((code == 0 || code == 4)) || fail "$unit: the right model is called unfit: $(grep -m 2 -E '^(Fit|Not|Statist)' "$work/said")"
-  python3 - "$work/compare/compare.json" <<'END' || fail "$unit: the right model leaves more than noise"
+  python3 - "$work/compare/compare.json" <<'END' || fail "$unit: the residual of the right model exceeds noise"
 import json, sys
 d = json.load(open(sys.argv[1]))
 print(f"the right model: {d['bins_exceeding']} of {d['bins']} bins exceed what noise allows")
@@ -52,12 +52,12 @@ END
   "$swingbank" calibrate --sparse --model "$work/owner.toml" --records "$work"/event*.csv --out "$work/fewest" >"$work/said" \
     2>"$work/errors" || code=$?
   ((code == 0 || code == 4)) || fail "$unit: exit code $code: $(tail -3 "$work/said" "$work/errors")"
-  python3 - "$work/fewest/calibrate.json" "${@:5}" <<'END' || fail "$unit: not the values that are wrong"
+  python3 - "$work/fewest/calibrate.json" "${@:5}" <<'END' || fail "$unit: other values were named than the wrong ones"
 import json, sys
 wrong = {w["name"]: w["fitted"] for w in json.load(open(sys.argv[1]))["wrong"]}
 truth = {name: float(value) for name, value in (a.split("=") for a in sys.argv[2:])}
 count = len(wrong)
-if "ESST4B.KPM" in wrong and "ESST4B.KPR" in truth:  # KG = 0: only KPM KPR and KPM KIR act; owner: KPR = KIR = 5.5
+if "ESST4B.KPM" in wrong and "ESST4B.KPR" in truth:  # KG = 0: only KPM KPR and KPM KIR act; the model has KPR = KIR = 5.5
     gain = wrong.pop("ESST4B.KPM")
     print(f"ESST4B.KPM {gain:.4g} scales KPR and KIR")
     wrong |= {name: gain * wrong.get(name, 5.5) for name in ("ESST4B.KPR", "ESST4B.KIR")}

@@ -23,7 +23,7 @@ starts() {
     if [[ $command == predict ]]; then options=(--network "$work/no data" --model none.toml --records none.csv); fi
     if env "$@" "$swingbank" "$command" "${options[@]}" >"$work/said" 2>&1; then fail "$case: $command without data"; fi
     (($(grep -cE "$pattern" "$work/said") == 1)) || fail "$case: $command does not say '$pattern' once: $(cat "$work/said")"
-    (($(grep -c '^BLAS: ' "$work/said") == 1)) || fail "$case: $command says not once what it uses: $(cat "$work/said")"
+    (($(grep -c '^BLAS: ' "$work/said") == 1)) || fail "$case: $command does not state its kernels once: $(cat "$work/said")"
     grep -q "no data" "$work/said" || fail "$case: $command has lost its arguments: $(cat "$work/said")"
   done
   echo "ok: $case: $(grep -E "$pattern" "$work/said")"
@@ -43,19 +43,19 @@ fi
 for words in "--help" "--experiment $SWINGBANK_SOURCE/configs/experiments/ieee14_genrou.toml --print table"; do
   # shellcheck disable=SC2086 # words
   "$swingbank" train $words >"$work/said" 2>&1 || fail "train $words: $(cat "$work/said")"
-  if grep -q BLAS: "$work/said"; then fail "train $words speaks of BLAS"; fi
+  if grep -q BLAS: "$work/said"; then fail "train $words mentions BLAS"; fi
 done
 
 disguise=LD_PRELOAD=$SWINGBANK_BIN/unknown_processor.so
 status=0
 env "$disguise" true || status=$?
 if ((status == 77)); then
-  echo "left out: this processor cannot be disguised (no CPUID faulting)"
+  echo "skipped: no other processor can be emulated here (no CPUID faulting)"
   exit 0
 fi
-((status == 0)) || fail "the disguise itself: $status"
+((status == 0)) || fail "the emulated processor: exit code $status"
 if [[ $best != SSE ]]; then
   starts "a processor that OpenBLAS does not know" "^BLAS: OpenBLAS [0-9.]+ $name \(chosen by OpenBLAS: Prescott\)" "$disguise"
-  if grep -q "warning: .* kernels" "$work/said"; then fail "warned although all is well: $(cat "$work/said")"; fi
+  if grep -q "warning: .* kernels" "$work/said"; then fail "a warning without a cause: $(cat "$work/said")"; fi
   starts "there, the user's wish" 'Prescott \(forced by OPENBLAS_CORETYPE=PRESCOTT\)' "$disguise" OPENBLAS_CORETYPE=PRESCOTT
 fi

@@ -60,7 +60,7 @@ system changed >"$work/changed.toml"
 code=0
 "$swingbank" compare --system "$work/changed.toml" --out "$work/bad" >"$work/text" || code=$?
 ((code == 3)) || fail "exit code $code with a changed governor"
-grep -q '^The model of the plant at terminal gen2 fails in playback' "$work/text" || fail "not named: $(tail -4 "$work/text")"
+grep -q '^The model of the plant at terminal gen2 fails in playback' "$work/text" || fail "the changed terminal is not named: $(tail -4 "$work/text")"
 for file in report.html compare.json curves-bus5.csv curves-gen1.csv curves-gen2.csv; do
   [[ -s $work/bad/$file ]] || fail "no $file"
 done
@@ -75,7 +75,7 @@ refuses "a line that is cut off" 'cut.csv:201' compare --system "$work/wrong.tom
 sed '50,52s/,[^,]*$/,NaN/' "$work/same.csv" >"$work/lost.csv"
 changed_system 's|same.csv|lost.csv|'
 "$swingbank" compare --system "$work/wrong.toml" --out "$work/lost" >"$work/text" || fail "three lost frames: $(tail -3 "$work/text")"
-grep -q '^note on bus5: 3 of [0-9]* samples are missing' "$work/text" || fail "not said: $(cat "$work/text")"
+grep -q '^note on bus5: 3 of [0-9]* samples are missing' "$work/text" || fail "the missing samples are not reported: $(cat "$work/text")"
 sed '50,69s/,[^,]*$/,NaN/' "$work/same.csv" >"$work/nan.csv"
 changed_system 's|same.csv|nan.csv|'
 refuses "not a number" 'nan.csv:50' compare --system "$work/wrong.toml"

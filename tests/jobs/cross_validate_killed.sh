@@ -23,9 +23,9 @@ for ((i = 0; i < 300; ++i)); do
 done
 if kill -0 "${children[@]}" 2>/dev/null; then
   kill -KILL "${children[@]}"
-  fail "they train on without the one that waits for them"
+  fail "the training processes continue after their parent was killed"
 fi
 for fold in 30 31; do
   [[ -e $out/checkpoints/V-gru-quick-seed1-gen$fold.checkpoint ]] || fail "no checkpoint of fold $fold: $(tail "$work/log")"
 done
-echo "ok: killed: checkpoints of both folds stand"
+echo "ok: killed: checkpoints of both folds exist"

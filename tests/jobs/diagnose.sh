@@ -16,13 +16,13 @@ status=0
 script -qefc "'$swingbank' diagnose --model '$model' --records '$one' '$two' --power-only --threads 1 --out '$work/found' --json \
   >'$work/printed.json'" "$work/terminal" >/dev/null || status=$?
 ((status == 3)) || fail "exit code $status, expected 3"
-# progress on a terminal in plain words: the percentage done, or that an optional search phase runs
+# progress on a terminal states the percentage done, or that an optional search phase runs
 tr '\r' '\n' <"$work/terminal" | sed 's/\x1b\[K//' | grep -E ' [0-9]+ of [0-9]+' >"$work/progress"
 (($(wc -l <"$work/progress") > 20)) || fail "a terminal shows no progress: $(cat "$work/progress")"
 ! grep -vE '^(note|[0-9]+ % done(, about .* left)?: [a-z]|optional search phase: [a-z])' "$work/progress" >"$work/inner" ||
-  fail "progress without a share: $(cat "$work/inner")"
-sed -n 's/^\([0-9]*\) % done.*/\1/p' "$work/progress" | sort -n -c || fail "the share done goes back"
-# the remaining time falls: seconds of each line that states it
+  fail "progress without a percentage: $(cat "$work/inner")"
+sed -n 's/^\([0-9]*\) % done.*/\1/p' "$work/progress" | sort -n -c || fail "the percentage done decreases"
+# the remaining time never rises [s], in the lines that state it
 python3 - "$work/progress" <<'PYTHON'
 import re, sys
 last = None
@@ -33,7 +33,7 @@ for line in open(sys.argv[1]):
     left = 3600 * h + 60 * m + s
     assert last is None or left <= last, f"the time left rises from {last} s: {line}"
     last = left
-assert last is not None, "no time left is told"
+assert last is not None, "no line states the time left"
 PYTHON
 cmp "$work/printed.json" "$work/found/diagnosis.json" || fail "--json prints something else than it writes"
 # the same result with another number of threads, except command, time and duration
@@ -67,7 +67,7 @@ wait "$diagnosing" || status=$?
 ((status == 2)) || fail "exit code $status after a signal, expected 2"
 grep -qx 'stopping' "$work/told" || fail "the signal is not acknowledged"
 grep -q 'Interrupted before a verdict' "$work/ended.txt" || fail "the interruption is not reported"
-grep -q '"verdict": "interrupted"' "$work/ended/diagnosis.json" || fail "the JSON does not say that it was interrupted"
+grep -q '"verdict": "interrupted"' "$work/ended/diagnosis.json" || fail "the JSON does not state the interruption"
 fits_schema_of diagnosis "$work/ended/diagnosis.json"
 [[ -s $work/ended/report.html ]] || fail "no page after a signal"
 

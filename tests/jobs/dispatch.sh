@@ -12,7 +12,7 @@ for program in "$SWINGBANK_BIN"/swingbank-*; do
   "$swingbank" "$command" --help >"$work/one" 2>&1 || fail "$command --help exits with $?"
   grep -q -- --help "$work/one" || fail "$command --help does not list its options"
   grep -q "^Usage: swingbank $command" "$work/one" || fail "$command --help has another usage line"
-  ! grep -qE 'ENUM|OR \{|\{(true|false)\}' "$work/one" || fail "$command --help has a parser's words"
+  ! grep -qE 'ENUM|OR \{|\{(true|false)\}' "$work/one" || fail "$command --help shows the option parser's notation"
 done
 refuses "slip of the pen" "did you mean 'nightly-compare'" "$swingbank" nightly-compar
 refuses "nothing near" 'swingbank --help' "$swingbank" xyzzyxyzzy
@@ -32,7 +32,7 @@ widest=. flags=$(grep -m 1 '^flags' /proc/cpuinfo)
 if [[ $flags == *' avx2 '* && $flags == *' fma '* ]]; then widest=x86-64-v3; fi
 if [[ $flags == *' avx512f '* && $flags == *' avx512vl '* && $flags == *' avx512dq '* ]]; then widest=x86-64-v4; fi
 [[ $("$work/bin/swingbank" probe one) == "this is $widest, one" ]] || fail "not $widest: $("$work/bin/swingbank" probe one)"
-[[ $(SWINGBANK_LEVEL=common "$work/bin/swingbank" probe) == "this is ., " ]] || fail "not the common one"
+[[ $(SWINGBANK_LEVEL=common "$work/bin/swingbank" probe) == "this is ., " ]] || fail "SWINGBANK_LEVEL=common does not start the common program"
 rm "$work/bin/$widest/swingbank-probe" && [[ $widest != . ]] &&
   refuses "no such level" 'SWINGBANK_LEVEL' env SWINGBANK_LEVEL="$widest" "$work/bin/swingbank" probe
 refuses "unknown level" 'SWINGBANK_LEVEL' env SWINGBANK_LEVEL=x86-64-v9 "$work/bin/swingbank" probe

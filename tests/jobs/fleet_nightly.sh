@@ -84,12 +84,12 @@ kill -9 "$child"
 code=0
 wait "$started" || code=$?
 ((code == 1)) || fail "exit code $code with a diagnosis killed"
-grep -q 'p3 failed: The diagnosis was ended by signal 9' "$work/table" || fail "no word of it: $(cat "$work/table")"
+grep -q 'p3 failed: The diagnosis was ended by signal 9' "$work/table" || fail "the killed diagnosis is not reported: $(cat "$work/table")"
 grep -q '2 failed' "$work/table" || fail "others failed too: $(cat "$work/table")"
 expect 1 fleet "$work/fleet.toml" "$work/soft"
 same_table "$work/whole" "$work/soft"
 
-# only modified inputs of the same name are diagnosed again
+# after a change of a record, only the plants with this record are diagnosed again
 sed -i 's/^0.05,[^,]*/0.05,1.045/' "$work/records/e4.csv"
 expect 1 fleet "$work/fleet.toml" "$work/soft"
-(($(grep -c 'existed already' "$work/soft.log") == 1)) || fail "what changed: $(cat "$work/soft.log")"
+(($(grep -c 'existed already' "$work/soft.log") == 1)) || fail "not one plant existed already: $(cat "$work/soft.log")"

@@ -53,9 +53,9 @@ grep -q '^stable at 3 s' <<<"$said" || fail "zero star leg: $said"
 grep -Eq '\b5\b.*pu|bus 5' <<<"$said" && fail "the star point is reported as a bus: $said"
 grep -q 'winding at bus 3 of 2-3-4' <<<"$said" || fail "the leg of zero is not named: $said"
 head -n 1 "$work/three.csv" | grep -q bus5 && fail "a column of the star point"
-simulate three --buses 5 >/dev/null 2>"$work/said" && fail "--buses 5 was taken"
+simulate three --buses 5 >/dev/null 2>"$work/said" && fail "--buses 5 was accepted"
 grep -q 'no bus 5' "$work/said" || fail "--buses 5: $(cat "$work/said")"
-simulate three --trip 2:5:1:1 >/dev/null 2>"$work/said" && fail "--trip 2:5:1:1 was taken"
+simulate three --trip 2:5:1:1 >/dev/null 2>"$work/said" && fail "--trip 2:5:1:1 was accepted"
 grep -q 'no bus 5' "$work/said" || fail "--trip 2:5:1:1: $(cat "$work/said")"
 # The winding at bus 2 connects only the unit. Each of these trips disconnects the unit, which runs on without load.
 for trip in 2:3:1:1 2:3:4:1:1 4:3:2:1:1:1.1; do

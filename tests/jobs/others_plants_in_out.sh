@@ -18,8 +18,8 @@ there_and_back() {
     esac
   done
   "$swingbank" plant --raw "$raw" --dyr "$work/$name.dyr" --bus "$bus" "${again[@]}" 2>/dev/null >"$work/again.toml" ||
-    fail "$name does not come back"
-  cmp <(grep -v '^ *#\|^standard' "$work/$name.toml") <(grep -v '^ *#\|^standard' "$work/again.toml") || fail "$name: another plant after the way out and in"
+    fail "the exported $name cannot be extracted"
+  cmp <(grep -v '^ *#\|^standard' "$work/$name.toml") <(grep -v '^ *#\|^standard' "$work/again.toml") || fail "$name: the plant extracted from the export differs"
   echo "ok: $name"
 }
 there_and_back texas powerfulcases_activsg2000/ACTIVSg2000.raw powerfulcases_activsg2000/ACTIVSg2000.dyr 1048

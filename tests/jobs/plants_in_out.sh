@@ -11,7 +11,7 @@ raw=$networks/ieee39_genrou.raw dyr=$networks/ieee39_genrou.dyr
 grep -q "^wrote $work/plant.toml" "$work/said" || fail "plant says: $(cat "$work/said")"
 "$swingbank" export --model "$work/plant.toml" --out "$work/plant.dyr" >/dev/null
 "$swingbank" plant --raw "$raw" --dyr "$work/plant.dyr" --bus 32 >"$work/again.toml" 2>/dev/null
-cmp <(grep -v '^#' "$work/plant.toml") <(grep -v '^#' "$work/again.toml") || fail "the plant is another after the way out and in"
+cmp <(grep -v '^#' "$work/plant.toml") <(grep -v '^#' "$work/again.toml") || fail "the plant extracted from the export differs"
 "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 32 2>/dev/null | cmp - "$work/plant.toml" || fail "--out writes something else than is printed"
 cmp <("$swingbank" export --model "$work/plant.toml") "$work/plant.dyr" || fail "export --out writes something else than is printed"
 "$swingbank" export --model "$work/plant.toml" --bus 7 --id B | holds -q "^7 'GENROU' 'B' " || fail "export --bus --id"
@@ -20,7 +20,7 @@ cmp <("$swingbank" export --model "$work/plant.toml") "$work/plant.dyr" || fail 
 sed "s/', 345, /', 1, /" "$raw" >"$work/per_unit.raw"
 "$swingbank" plant --raw "$work/per_unit.raw" --dyr "$dyr" --bus 32 >"$work/per_unit.toml" 2>"$work/notes"
 grep -q '^base_kv' "$work/per_unit.toml" && fail "1 kV is taken for a nominal voltage"
-grep -q 'no nominal voltage (BASKV = 1 kV): for records in kV write base_kv' "$work/notes" || fail "not said: $(cat "$work/notes")"
+grep -q 'no nominal voltage (BASKV = 1 kV): for records in kV write base_kv' "$work/notes" || fail "the missing nominal voltage is not reported: $(cat "$work/notes")"
 grep -q '^# base_kv =  # nominal line-to-line voltage' "$work/per_unit.toml" || fail "the file does not ask for base_kv"
 ! grep -q 'BASKV' "$work/per_unit.toml" || fail "the file keeps a note that is wrong once base_kv is filled in"
 for k in 1 2; do
@@ -29,7 +29,7 @@ done
 status=0
 "$swingbank" compare --model "$work/per_unit.toml" --records "$work"/kv[12].csv --out "$work/no" 2>"$work/words" >&2 || status=$?
 ((status == 1)) || fail "compare without base_kv: exit code $status"
-[[ $(grep -c 'add base_kv under \[record\]' "$work/words") == 1 ]] || fail "the missing base_kv is named otherwise than once: $(cat "$work/words")"
+[[ $(grep -c 'add base_kv under \[record\]' "$work/words") == 1 ]] || fail "the missing base_kv is not named exactly once: $(cat "$work/words")"
 grep -q 'kv1.csv.*kv2.csv' "$work/words" || fail "the missing base_kv is not named for both records"
 
 # Exported to PSLF and read back: the same plant, with controls; Ra and mva of the .dyd take precedence.
@@ -41,10 +41,10 @@ grep -q 'kv1.csv.*kv2.csv' "$work/words" || fail "the missing base_kv is not nam
 grep -qE '^genrou +32 "NORTH +" 20 "1 " : #9 mva=[0-9.]+ "tpdo" ' "$work/plant.dyd" || fail "export --dyd: $(cat "$work/plant.dyd")"
 "$swingbank" plant --raw "$raw" --dyd "$work/plant.dyd" --bus 32 >"$work/again.toml" 2>"$work/notes" || fail "plant --dyd: $(cat "$work/notes")"
 values() { sed 's/ *#.*//; /^$/d; /^origin/d; /^base_kv/d; /^name/d' "$1" | sort; } # blocks in whatever order
-cmp <(values "$work/controlled.toml") <(values "$work/again.toml") || fail "the plant is another after the way through PSLF"
+cmp <(values "$work/controlled.toml") <(values "$work/again.toml") || fail "the plant extracted from the PSLF export differs"
 sed 's/"ra" [^ ]*/"ra" 0.004/; s/mva=[^ ]*/mva=450/' "$work/plant.dyd" >"$work/other.dyd"
-"$swingbank" plant --raw "$raw" --dyd "$work/other.dyd" --bus 32 2>"$work/notes" | holds -qE '^Ra = 0.004 ' || fail "the .dyd's Ra does not count"
-grep -q '450 MVA' "$work/notes" || fail "it does not say that the base is the .dyd's: $(cat "$work/notes")"
+"$swingbank" plant --raw "$raw" --dyd "$work/other.dyd" --bus 32 2>"$work/notes" | holds -qE '^Ra = 0.004 ' || fail "the Ra of the .dyd is not used"
+grep -q '450 MVA' "$work/notes" || fail "the base of the .dyd is not reported: $(cat "$work/notes")"
 sed 's/"xcomp" [^ ]*/"xcomp" -0.05/' "$work/plant.dyd" >"$work/other.dyd"
 refuses "a compensated machine" "xcomp = -0.05 of genrou .*other.dyd" "$swingbank" plant --raw "$raw" --dyd "$work/other.dyd" --bus 32
 refuses "neither" "no dynamic models" "$swingbank" plant --raw "$raw" --bus 32
@@ -62,9 +62,9 @@ refuses "its own unknown model" "unknown model 'ESAC9Z' .*more.dyr:$line .*--dro
   "$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32
 grep -q STRANGE "$work/stderr" && fail "another unit's model was named"
 "$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32 --drop ESAC9Z >"$work/dropped.toml" 2>"$work/notes"
-grep -q "ESAC9Z of line $line ignored" "$work/notes" || fail "it does not say what was dropped: $(cat "$work/notes")"
+grep -q "ESAC9Z of line $line ignored" "$work/notes" || fail "the dropped record is not reported: $(cat "$work/notes")"
 "$swingbank" plant --raw "$raw" --dyr "$work/more.dyr" --bus 32 --replace ESAC9Z=SEXS >"$work/replaced.toml" 2>"$work/notes"
-grep -q 'default_values = true' "$work/replaced.toml" || fail "a replacement of other parameters has no standard values"
+grep -q 'default_values = true' "$work/replaced.toml" || fail "a replacement by a model with other parameters has no default values"
 refuses "no such bus" "no bus 4711" "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 4711
 refuses "no unit there" "no generator at bus 16" "$swingbank" plant --raw "$raw" --dyr "$dyr" --bus 16
 sed '/^bus = 2/d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml" >"$work/no_bus.toml"
@@ -74,7 +74,7 @@ misused "no bus" "bus" "$swingbank" plant --raw "$raw" --dyr "$dyr"
 # The message has one line for each model, not for each record.
 for bus in 31 33 34; do echo "$bus 'STRANGE' 1 1 2 3 /"; done >>"$work/more.dyr"
 refuses "grouped" "unknown model 'STRANGE' of '1' at bus 30 and 3 more" "$swingbank" simulate --raw "$raw" --dyr "$work/more.dyr" --out "$work/x.csv"
-(($(grep -c STRANGE "$work/stderr") == 1)) || fail "not grouped: $(cat "$work/stderr")"
+(($(grep -c STRANGE "$work/stderr") == 1)) || fail "the records are not grouped: $(cat "$work/stderr")"
 "$swingbank" inventory --raw "$raw" --dyr "$work/more.dyr" >"$work/inventory"
 grep -q '^10 units: 5 fully covered (50.0 %), 5 partly' "$work/inventory" || fail "inventory says: $(head -1 "$work/inventory")"
 grep -qE "^STRANGE +4 +4 +[0-9]+  no$" "$work/inventory" || fail "inventory: $(cat "$work/inventory")"
@@ -114,5 +114,5 @@ grep -q "short.dyr:$(wc -l <"$work/short.dyr"): EMIN = -500 pu (usual range of S
   sed '/^\[machine\]/,$d' "$SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"
   "$swingbank" effects --toml GENROU IEEET1
 } >"$work/pasted.toml"
-"$swingbank" export --model "$work/pasted.toml" --bus 2 | holds -q "^2 'IEEET1' '1' " || fail "the pasted blocks make no plant"
+"$swingbank" export --model "$work/pasted.toml" --bus 2 | holds -q "^2 'IEEET1' '1' " || fail "the plant file with the pasted blocks is not exported"
 refuses "a block of nothing" "--toml prints the block of one effect" "$swingbank" effects --toml

@@ -80,11 +80,11 @@ cut -d, -f1-3,5,6 "$work/row-000.csv" >"$work/no-speed.csv"
 refuses "channel that was not measured" 'channel speed at no-speed.csv' predict --records "$work/no-speed.csv"
 refuses "record ends too early" 'give a longer record' predict --records "$work/row-000.csv" --event 3.0
 refuses "nothing before the event" 'give a record that begins earlier' predict --records "$work/row-000.csv" --event 0.01
-predict --records "$work/wild.csv" >"$work/log" 2>&1 || fail "a wild record: $(cat "$work/log")"
+predict --records "$work/wild.csv" >"$work/log" 2>&1 || fail "a record outside the training data: $(cat "$work/log")"
 awk '/^warning: wild.csv differs from the training data/ {told = 1} /^parameter / {exit !told}' "$work/log" || fail "the record unlike the training data is not reported before its estimate: $(cat "$work/log")"
-predict --records "$work/wild.csv" "$work/row-000.csv" --json 2>/dev/null >"$work/printed.json" || fail "a wild record as JSON"
+predict --records "$work/wild.csv" "$work/row-000.csv" --json 2>/dev/null >"$work/printed.json" || fail "a record outside the training data, as JSON"
 /usr/bin/python3 -c 'import json, sys; j = json.load(open(sys.argv[1])); most = 1.5 * j["network"]["input_rms_seen"]; assert j["records"][0]["unlike_training"] and all(r["unlike_training"] == (r["input_rms"] > most) for r in j["records"])' "$work/printed.json" ||
-  fail "JSON does not say which record is unlike: $(cat "$work/printed.json")"
+  fail "the JSON does not name the record outside the training data: $(cat "$work/printed.json")"
 refuses "no network" 'none.network' "$swingbank" predict --network "$work/none.network" --model "$work/plant.toml" --records "$work/row-000.csv"
 head -c 3000 "$network" >"$work/cut.network"
 refuses "truncated network" 'cut.network .its checksum is wrong' "$swingbank" predict --network "$work/cut.network" --model "$work/plant.toml" --records "$work/row-000.csv"

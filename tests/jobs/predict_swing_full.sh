@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The network of the swing equation learns from a tiny dataset and is far better than predicting the mean. From records
 # (swingbank predict) it gives the same estimates as from the same rows in its test. X'd comes from the plant file. A
-# likelihood search from its estimates (steps_from) trains it first, and reduces the error of noisy records.
+# likelihood search from its estimates (steps_from) first trains the network, and reduces the error of noisy records.
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/tiny_experiment.bash"
 export OMP_NUM_THREADS=1

@@ -33,7 +33,7 @@ step 3 'diagnose --model configs/plants/ieee14_bus2.toml'
 verdict diagnosis >example
 grep -q SEXS example || fail "the example's diagnosis: $(cat example)"
 step 0 'add SEXS'
-[[ -s added/model.dyr ]] || grep -q 'no .dyr' said || fail "add says nothing of records"
+[[ -s added/model.dyr ]] || grep -q 'no .dyr' said || fail "add neither writes a .dyr nor reports why"
 
 step 0 'inventory'
 step 0 'simulate'
@@ -51,7 +51,7 @@ grep -q "^2 'GENROU' '1' " mine_unit.dyr || fail "export: $(cat mine_unit.dyr)"
 status=0
 swingbank diagnose --model calibrated/model-not-adequate.toml --records event*.csv --out bent >said 2>said.errors || status=$?
 ((status == 3)) || fail "diagnose of the biased model: exit code $status: $(tail -n 5 said.errors)"
-grep -q 'started from the values before' said.errors || fail "it does not say what it began with: $(cat said.errors)"
+grep -q 'started from the values before' said.errors || fail "the starting values are not reported: $(cat said.errors)"
 verdict bent >bent.verdict
 cmp mine bent.verdict || fail "the verdict on the biased model differs: $(cat mine bent.verdict)"
 refuses "export of a biased model" "not adequate" swingbank export --model calibrated/model-not-adequate.toml

@@ -35,9 +35,9 @@ cp "$work/run.csv" "$work/named.csv"
 case_of twice '' "1,4,'1',0.01,0.10,0.02"
 refuses "repeated branch" "branch 1-4 circuit '1' appears twice at .*twice.raw:[0-9]+ .*--repeated voltages" simulate twice
 simulate twice --repeated keep | holds -q "kept under a new id (--repeated keep): branch 1-4 circuit '1' .*as 'R1'" || fail "the kept branch is not named"
-cmp -s "$work/run.csv" "$work/named.csv" || fail "the kept branch is not the one of an id of its own"
-simulate twice --repeated voltages | holds -q "is ignored, because the file's voltages contradict it" || fail "the voltages do not decide"
-cmp -s "$work/run.csv" "$work/whole.csv" || fail "the branch that the voltages do not show is there"
+cmp -s "$work/run.csv" "$work/named.csv" || fail "the run differs from that with the branch under its own id"
+simulate twice --repeated voltages | holds -q "is ignored, because the file's voltages contradict it" || fail "the branch that contradicts the voltages is not ignored"
+cmp -s "$work/run.csv" "$work/whole.csv" || fail "the branch that contradicts the voltages is in the run"
 
 case_of dangling "77,'1',1,1,1,5.0,1.0" "4,77,'1',0.01,0.1"
 refuses "missing bus" 'bus 77 is not in the bus section at .*leave the equipment out with --drop-refused' simulate dangling

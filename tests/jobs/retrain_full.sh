@@ -9,7 +9,7 @@ retrain_given "$work/text" || (($? == 3)) || fail "$(tail -5 "$work/log")"
 # again: datasets and networks exist
 before=$(stat -c %Y "$work"/given/retrain/*/results/*.network)
 retrain_given "$work/again" || (($? == 3)) || fail "again: $(tail -5 "$work/log")"
-cmp "$work/text" "$work/again" || fail "the second run says something else"
+cmp "$work/text" "$work/again" || fail "the second run prints another result"
 [[ $before == "$(stat -c %Y "$work"/given/retrain/*/results/*.network)" ]] || fail "networks were trained again"
 
 # without a dataset the plant is connected through lines

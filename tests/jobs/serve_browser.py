@@ -44,7 +44,7 @@ def text(name):
 
 
 def chips():
-    """(event, channel) -> class, ratio and title of its chip."""
+    """(event, channel) -> class, ratio and title of its chip, the label with its error."""
     return {(e, c): rest for e, c, *rest in page.execute_script(
         "return [...document.querySelectorAll('.chip')].map((c) => [Number(c.dataset.event), Number(c.dataset.channel), "
         "c.className, c.querySelector('.ratio').textContent, c.title])")}

@@ -35,11 +35,11 @@ for storage in float32 int16; do
   "$swingbank" generate "$work/$storage/tiny_data.toml" --progress none --out "$work/$storage/data" >/dev/null 2>&1
   train "$storage-disk" "$work/$storage/data"
   train "$storage-memory" --simulate "$work/$storage/tiny_data.toml"
-  diff <(told "$storage-disk") <(told "$storage-memory") || fail "$storage: other results from memory"
+  diff <(told "$storage-disk") <(told "$storage-memory") || fail "$storage: the results from memory differ"
 done
 cmp -s <(told float32-disk) <(told int16-disk) && fail "the int16 dataset gives the same result as float32"
 train again --simulate "$work/float32/tiny_data.toml"
-cmp <(told float32-memory) <(told again) || fail "another time, other results"
+cmp <(told float32-memory) <(told again) || fail "a repeated run gives other results"
 train seed --simulate "$work/float32/tiny_data.toml" --draw-seed 8
 cmp -s <(told float32-memory) <(told seed) && fail "the seed changes nothing"
 
@@ -52,7 +52,7 @@ for from in disk memory; do
 done
 for fold in 30 31; do
   name=V-gru-quick-noise0.001-seed1-gen$fold.json
-  diff <(grep -v seconds "$work/folds-disk/$name") <(grep -v seconds "$work/folds-memory/$name") || fail "another fold from memory"
+  diff <(grep -v seconds "$work/folds-disk/$name") <(grep -v seconds "$work/folds-memory/$name") || fail "a fold trained from memory differs"
 done
 
 sed 's/^networks = .*/networks = ["closed-form"]/' "$work/split.toml" >"$work/direct.toml"

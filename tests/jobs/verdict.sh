@@ -24,7 +24,7 @@ assert all(abs(e["me"]) <= e["mae"] <= e["mxe"] <= e["limits"]["mxe"] for e in r
 PYTHON
 for command in compare calibrate add diagnose; do
   "$swingbank" "$command" --help | tr -s ' \n' ' ' | holds -q '3 neither, 4 fit for purpose, but not statistically complete, 5' ||
-    fail "$command --help does not tell the exit codes"
+    fail "$command --help does not list the exit codes"
 done
 
 for command in compare calibrate add diagnose effects export; do

@@ -5,7 +5,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/lib.bash"
 source "$SWINGBANK_SOURCE/jobs/run_saving.bash"
 launcher_patience=2
-# launcher A B: starts a process that ends after A seconds, does not notice that, and itself ends after B seconds.
+# launcher A B: starts a process that ends after A seconds. The launcher does not notice it and ends after B seconds.
 launcher=(/usr/bin/python3 -c 'import os, sys, time
 if os.fork() == 0:
     time.sleep(float(sys.argv[1]))
@@ -14,9 +14,9 @@ time.sleep(float(sys.argv[2]))')
 code=0
 run_saving "${launcher[@]}" 0 60 2>"$work/log" || code=$?
 ((code == 137)) || fail "exit code $code of a launcher that hung: $(cat "$work/log")"
-grep -q 'a process killed at' "$work/log" || fail "no word of it: $(cat "$work/log")"
+grep -q 'a process killed at' "$work/log" || fail "the ended launcher is not reported: $(cat "$work/log")"
 run_saving "${launcher[@]}" 6 4 2>"$work/log" || fail "a launcher was ended whose process lived: $(cat "$work/log")"
-[[ ! -s $work/log ]] || fail "said of a sound launcher: $(cat "$work/log")"
+[[ ! -s $work/log ]] || fail "a message about a sound launcher: $(cat "$work/log")"
 "${launcher[@]}" 60 60 & # a process that is stopped
 stopped=$!
 sleep 0.3

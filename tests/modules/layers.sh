@@ -63,7 +63,7 @@ while read -r from header said; do
     echo "$from can include $header: a module must not see that" >&2
     failed=1
   elif [[ $said != *"$header: No such file"* ]]; then
-    echo "$from with $header fails for another reason than a header out of sight: $said" >&2
+    echo "$from with $header fails for another reason than a missing header: $said" >&2
     failed=1
   fi
 done <"$work/tried"

@@ -5,7 +5,7 @@ set -euo pipefail
 cd "${SWINGBANK_SOURCE:?}"
 failed=0
 if grep -rn 'MPI_' mpi/store; then
-  echo "mpi/store calls MPI: what several ranks do together belongs into mpi/ranks" >&2
+  echo "mpi/store calls MPI: move collective operations to mpi/ranks" >&2
   failed=1
 fi
 find_library() { find "${SWINGBANK_BIN:?}/.." -name "libswingbank_mpi_$1.a" -print -quit; }
@@ -16,7 +16,7 @@ calls() {
   nm -u "$library" | grep -c ' MPI_' || true
 }
 if [ "$(calls ranks)" -eq 0 ]; then
-  echo "no MPI call is found in mpi/ranks either: this way of looking finds nothing" >&2
+  echo "no MPI call is found in mpi/ranks either: this search finds nothing" >&2
   failed=1
 fi
 if [ "$(calls store)" -ne 0 ]; then

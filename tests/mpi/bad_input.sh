@@ -42,7 +42,7 @@ expect 0 "$whole" "${make[@]}" --out "$work/limit"
 # A file system without preallocation (error 95, EOPNOTSUPP): the data are written without it and are complete.
 expect 0 "$whole" env LD_PRELOAD="$SWINGBANK_BIN/failing_call.so" FAILING_CALL=fallocate FAILING_ERROR=95 FAILING_AT=1 \
   FAILING_UNDER="$work/unreserved" FAILING_LOG="$work/failing" "${make[@]}" --out "$work/unreserved"
-grep -q "^failed fallocate" "$work/failing" || fail "no space was asked for: $(cat "$work/failing")"
+grep -q "^failed fallocate" "$work/failing" || fail "no space was preallocated: $(cat "$work/failing")"
 
 # Damaged shards are detected and generated again.
 truncate -s 1000 "$work/data/shards/shard-000001.h5"

@@ -27,7 +27,7 @@ report_campaign() {
   local made wrongs
   made=$(wc -l <"$results")
   wrongs=$(awk '$2 == "wrong"' "$results" | wc -l)
-  echo "$made of $1 done, $((made - wrongs)) as promised, $wrongs otherwise"
+  echo "$made of $1 done, $((made - wrongs)) as required, $wrongs failed"
   if ((wrongs > 0)); then awk '$2 == "wrong"' "$results" >&2; fi
   ((wrongs == 0))
 }

@@ -10,4 +10,4 @@ kill -STOP "$(pgrep -P "$mpirun_pid" -f "$work/hung" | tail -1)"
 code=0
 wait $pid || code=$?
 if [ "$code" = 0 ] || [ "$code" = 124 ]; then fail "exit code $code of a run with a hung rank"; fi
-grep -qE "is overdue at rank|no reply from rank 0" "$work/log" || { cat "$work/log"; fail "no word about the hung rank"; }
+grep -qE "is overdue at rank|no reply from rank 0" "$work/log" || { cat "$work/log"; fail "the hung rank is not reported"; }

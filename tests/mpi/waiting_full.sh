@@ -14,8 +14,8 @@ ends_softly() {
   kill -USR1 "$1"
   wait "$1" || code=$?
   [ $code = 2 ] || { cat "$work/drawing" >&2; fail "exit code $code after a signal while the databank was drawn"; }
-  ((SECONDS - start < 20)) || fail "a signal was heard after $((SECONDS - start)) s"
-  grep -q 'stopped on a signal' "$work/drawing" || fail "no word of the signal: $(cat "$work/drawing")"
+  ((SECONDS - start < 20)) || fail "the run ended only $((SECONDS - start)) s after the signal"
+  grep -q 'stopped on a signal' "$work/drawing" || fail "the signal is not reported: $(cat "$work/drawing")"
 }
 
 "$SWINGBANK_BIN/swingbank-databank" "$config" --points 500000 --out "$work/bank.csv" >"$work/drawing" 2>&1 &

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# research/nightly.sh at tiny size: two nights, a short night that is interrupted and resumed with the same sizes, two
-# runs at once, and a night that fails.
+# research/nightly.sh at tiny size: two nightly runs, a short one that is interrupted and resumed with the same sizes,
+# two at once, and one that fails.
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/lib.bash"
 source "$(dirname "${BASH_SOURCE[0]}")/../jobs/tiny_experiment.bash"
 export SWINGBANK_BUILD=${SWINGBANK_BIN%/bin} SWINGBANK_NIGHTLY_PAUSE=0 OMP_NUM_THREADS=1
@@ -9,30 +9,30 @@ TINY_DRAWS=120 TINY_TRAINING_DRAWS=40 tiny_experiment "$work"
 out=$work/nights
 night() { bash "$SWINGBANK_SOURCE/research/nightly.sh" --out "$out" --preset quick --tests 0 --fuzz 0 --blind "${BLIND:-0}" --date "$@" </dev/null; }
 
-night 2026-02-01 "$work/tiny.toml" >"$work/log" 2>&1 || fail "first night: $(tail "$work/log")"
+night 2026-02-01 "$work/tiny.toml" >"$work/log" 2>&1 || fail "first nightly run: $(tail "$work/log")"
 grep -q '| V | gru | 0 | 30 | quick | .* | new |' "$out/2026-02-01/report.md" || fail "report: $(cat "$out/2026-02-01/report.md")"
 grep -q '| V | mlp | 0 | 31 | quick | .* | new |' "$out/2026-02-01/report.md" || fail "report: $(cat "$out/2026-02-01/report.md")"
 [[ -s $out/2026-02-01/tables/tables.html ]] || fail "no tables"
 grep -q '^### Table V' "$out/2026-02-01/report.md" || fail "no table in the report: $(cat "$out/2026-02-01/report.md")"
-[[ ! -e $out/2026-02-01/tiny/data && ! -e $out/2026-02-01/tiny/training-data ]] || fail "the events were to be removed"
+[[ ! -e $out/2026-02-01/tiny/data && ! -e $out/2026-02-01/tiny/training-data ]] || fail "the events were not removed"
 
 # If the nightly run is interrupted after its events are complete, it continues and trains with its own seed.
 bash "$SWINGBANK_SOURCE/jobs/run_experiment.sh" --experiment "$work/tiny.toml" --preset quick --stage generate \
   --out "$out/2026-02-02/tiny" >/dev/null 2>&1
 touch "$work/before"
-night 2026-02-02 --keep-data "$work/tiny.toml" >"$work/log" 2>&1 || fail "second night: $(tail "$work/log")"
+night 2026-02-02 --keep-data "$work/tiny.toml" >"$work/log" 2>&1 || fail "second nightly run: $(tail "$work/log")"
 [[ -z $(find "$out/2026-02-02/tiny/data/shards" "$out/2026-02-02/tiny/training-data/shards" -newer "$work/before" -name '*.h5') ]] || fail "events were made again"
 [[ $(readlink "$out/latest") == 2026-02-02 ]] || fail "latest points to $(readlink "$out/latest")"
 grep -q 'fewer than 3 runs, no verdict' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
 first=$(find "$out/2026-02-01" -name '*gru*gen30.json') second=$(find "$out/2026-02-02" -name '*gru*gen30.json')
-[[ $(basename "$first") != "$(basename "$second")" ]] || fail "both nights trained with the same seed"
+[[ $(basename "$first") != "$(basename "$second")" ]] || fail "both nightly runs trained with the same seed"
 
 # A nightly run with a blind case: the case is made, judged and counted.
-BLIND=1 night 2026-02-02 "$work/tiny.toml" >"$work/log" 2>&1 || fail "night with a blind case: $(tail "$work/log")"
+BLIND=1 night 2026-02-02 "$work/tiny.toml" >"$work/log" 2>&1 || fail "nightly run with a blind case: $(tail "$work/log")"
 grep -q '^1 cases judged, 0 without a verdict' "$out/2026-02-02/report.md" || fail "report: $(cat "$out/2026-02-02/report.md")"
 
-# A night of a few seconds with two seeds is interrupted in training and continues with its original sizes (sizes.conf).
-# No time remains for tests, blind cases and fuzz targets.
+# A nightly run of a few seconds with two seeds is interrupted in training and continues with its original sizes
+# (sizes.conf). No time remains for tests, blind cases and fuzz targets.
 sed 's/preset\.quick/preset.nightly/' "$work/tiny.toml" >"$work/short.toml"
 short() {
   bash "$SWINGBANK_SOURCE/research/nightly.sh" --out "$work/short" --hours "$1" --seeds 2 --date 2026-02-05 "$work/short.toml" \
@@ -47,9 +47,9 @@ done
 kill -TERM "$(pgrep -P "$running" -f research/nightly.sh || echo "$running")"
 status=0
 wait "$running" || status=$?
-((status == 2)) || fail "a night with a stop signal: exit code $status: $(tail "$work/short.log")"
+((status == 2)) || fail "a nightly run with a stop signal: exit code $status: $(tail "$work/short.log")"
 cp "$work/short/2026-02-05/sizes.conf" "$work/sizes.before"
-short 5 || fail "the night that goes on: $(tail "$work/short.log")"
+short 5 || fail "the resumed nightly run: $(tail "$work/short.log")"
 printf '%s="0"\n' tests blind fuzz >>"$work/sizes.before"
 cmp "$work/sizes.before" "$work/short/2026-02-05/sizes.conf" || fail "the sizes changed"
 for wanted in '^| short: events | [0-9]' '^| short: training, seed 204890 |' '^| short: training, seed 204891 |' \
@@ -66,7 +66,7 @@ for told in '2026-02-06 99999 all passed' '2026-02-07 1 broken off'; do
   printf '\n== %s (after %s s)\n' "$end" "$took" >"$work/told/$date/tests.txt"
 done
 bash "$SWINGBANK_SOURCE/research/nightly.sh" --out "$work/told" --hours 4 --seeds 1 --preset quick --fuzz 0 --blind 0 --date 2026-02-08 \
-  "$work/tiny.toml" </dev/null >"$work/log" 2>&1 || fail "a night after one with long tests: $(tail "$work/log")"
+  "$work/tiny.toml" </dev/null >"$work/log" 2>&1 || fail "a nightly run after one with long tests: $(tail "$work/log")"
 grep -qx 'tests="0"' "$work/told/2026-02-08/sizes.conf" || fail "tests that take too long: $(cat "$work/told/2026-02-08/sizes.conf")"
 
 exec 8>"$out/.lock"
@@ -80,7 +80,7 @@ refuses "too many seeds" '--seeds 11' night 2026-02-03 --seeds 11 "$work/tiny.to
 sed 's/^epochs = .*/epochs = "many"/' "$work/tiny.toml" >"$work/wrong.toml"
 status=0
 night 2026-02-03 "$work/wrong.toml" >"$work/log" 2>&1 || status=$?
-((status == 1)) || fail "a night that fails: exit code $status"
+((status == 1)) || fail "a nightly run that fails: exit code $status"
 [[ $(grep -c 'failed with exit code' "$work/log") == 3 ]] || fail "three tries expected: $(cat "$work/log")"
-[[ $(readlink "$out/latest") == 2026-02-02 ]] || fail "a failed night became the latest"
-echo "ok: two nights, resume, lock, failure"
+[[ $(readlink "$out/latest") == 2026-02-02 ]] || fail "a failed nightly run became the latest"
+echo "ok: two nightly runs, resume, lock, failure"

@@ -60,8 +60,8 @@ before=$generated,afterany:$id
 submit tables
 cluster_retry 120 all_ended || fail "jobs still there after 120 s: $(squeue)"
 [[ -e $work/tabled ]] || fail "the last stage did not run: $(cat "$log"/*.log)"
-[[ $(cat "$work/generated") != "$(cat "$work/bad")" ]] || fail "it went on on the node that failed"
-grep -q "exit code 137 on $(cat "$work/bad"); trying again, without $(cat "$work/bad")" "$log/generate.log" || fail "no word of the retry"
+[[ $(cat "$work/generated") != "$(cat "$work/bad")" ]] || fail "the job continued on the node that failed"
+grep -q "exit code 137 on $(cat "$work/bad"); trying again, without $(cat "$work/bad")" "$log/generate.log" || fail "the retry is not reported"
 (($(grep -c 'requeueing is not allowed here' "$log/fold.log") == 2)) || fail "no follow-up segments: $(cat "$log/fold.log")"
 (($(grep -c '^fold ' "$log/jobs") == 3)) || fail "jobs: $(cat "$log/jobs")"
 echo "killed on $(cat "$work/bad"), went on on $(cat "$work/generated"); two tasks went on as new jobs"

@@ -30,8 +30,8 @@ submit() { bash "$SWINGBANK_SOURCE/slurm/submit.sh" "$work/tiny.toml" quick --si
 
 submit --dry-run >"$work/said"
 (($(grep -c '^sbatch ' "$work/said") == 4)) || fail "a dry run prints: $(cat "$work/said")"
-grep -q -- '--mem-per-cpu=2G .*generate.sbatch' "$work/said" || fail "no memory asked for: $(cat "$work/said")"
-grep tables.sbatch "$work/said" | grep -qF 'afterany:\<fold\>' || fail "a failed fold takes the tables with it: $(cat "$work/said")"
+grep -q -- '--mem-per-cpu=2G .*generate.sbatch' "$work/said" || fail "no memory is requested: $(cat "$work/said")"
+grep tables.sbatch "$work/said" | grep -qF 'afterany:\<fold\>' || fail "a failed fold cancels the tables: $(cat "$work/said")"
 [[ ! -e $STUB/sbatch && ! -e $work/out ]] || fail "a dry run did something"
 echo "ok: dry run"
 
@@ -47,7 +47,7 @@ sed 's/^dataset = .*/dataset = ""/' "$work/tiny.toml" >"$work/expected"
 sed 's/^dataset = .*/dataset = ""/' "$copy/tiny.toml" | cmp "$work/expected" || fail "the experiment as it was is not kept"
 echo 'draws = 0' >>"$work/tiny_data.toml"
 SWINGBANK_EXPERIMENT=$copy/tiny.toml bash "$kept/jobs/run_experiment.sh" --stage check || fail "the copy cannot be read"
-again=$("$swingbank" train --experiment "$copy/tiny.toml" --keep "$work/again") || fail "the copy does not stand alone"
+again=$("$swingbank" train --experiment "$copy/tiny.toml" --keep "$work/again") || fail "the copy depends on the original"
 sed -i '$d' "$work/tiny_data.toml"
 diff -r "$copy" "$(dirname "$again")" || fail "a copy of the copy differs"
 for kind in raw dyr; do
