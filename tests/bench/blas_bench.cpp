@@ -1,7 +1,7 @@
-// Influence of OpenBLAS's kernels on training: matrix products of its layers and whole steps, in processor
-// time of one thread. The library selects its kernels at program start, so each measurement is a separate
-// process, alternating. Usage: bench_blas [rounds 5] [kernels PRESCOTT HASWELL SKYLAKEX ...]; "-" is the
-// library's choice.
+// Influence of OpenBLAS's kernels on training: processor time of one thread for the matrix products of the
+// layers and for whole steps. The library selects its kernels at program start, so each measurement is a
+// separate process, alternating. Usage: bench_blas [rounds 5] [kernels PRESCOTT HASWELL SKYLAKEX ...]; "-" is
+// the library's choice.
 #include <ATen/ATen.h>
 #include <fmt/format.h>
 

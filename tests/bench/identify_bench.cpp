@@ -1,5 +1,5 @@
-// Time and result of infer, reduce and identify on a plant's records: the input that the records require, and
-// the result of each block alone. Usage: bench_identify PLANT.toml RECORD... [draws= kept= steps=]
+// Time and result of infer, reduce and identify on a plant's records: the inferred input, and the optimum of
+// each block identified alone. Usage: bench_identify PLANT.toml RECORD... [draws= kept= steps=]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   fmt::print("reduced: {:.3f} s\n", seconds() - start);
   round(reduction);
   fmt::print("after {:.2f} s\n", seconds() - begin);
-  // Linearises again at the leading hypothesis for the field voltage, with the torque of the model.
+  // Linearises again about the best hypothesis for the field voltage, without additional inputs.
   for (int again = 0; again < 2; ++again) {
     const auto lead = std::ranges::find(rows, event::InputKind::field, &Row::input);
     sim::plant::Plant leader = lead->trial.plant;

@@ -53,7 +53,7 @@ blind::cases::BlindEvent frequency_dip(second::Setup& s, blind::cases::BlindDraw
   return {fmt::format("frequency falls by {:.4f} pu from {:.5f} s", -s.dip.depth, s.dip.start), {}, {}};
 }
 
-/// Hides a kind in the setup. `size`: 0 to 1, relative to the kind's usual maximum.
+/// Adds the hidden effect of this kind to the setup. `size`: 0 to 1, relative to the kind's usual maximum.
 void hide(const std::string& kind, double size, second::Setup& s, blind::cases::BlindDraw& d) {
   if (kind == "SEXS") {
     s.exciter = second::Sexs{.ratio = 0.1, .TB = 10, .K = 200 * size, .TE = 0.05, .low = -4, .high = 5.5};
@@ -218,7 +218,8 @@ int run(const std::string& file, const std::string& out, int count, std::uint64_
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"blind cases by the second writing of machine, controls and drives", "blind-second"};
+  CLI::App app{"blind cases of the independent simulator of machine, controls and disturbances",
+               "blind-second"};
   std::string config, out;
   int count = 0;
   std::uint64_t seed = 1;

@@ -88,9 +88,11 @@ void put(sim::plant::Plant& p, sim::plant::Block b) {
   ASSERT_FALSE(sim::plant::place(p, std::move(b), "test").has_value());
 }
 
-TEST(SecondWriting, MachineAgrees) { EXPECT_LT(largest_difference(base(), plant(base())), kTolerance); }
+TEST(IndependentSimulator, MachineAgrees) {
+  EXPECT_LT(largest_difference(base(), plant(base())), kTolerance);
+}
 
-TEST(SecondWriting, StaysAtRest_WithoutAnEvent) {
+TEST(IndependentSimulator, StaysAtRest_WithoutAnEvent) {
   second::Setup s = base();
   s.machine.S10 = 0.1, s.machine.S12 = 0.5;
   s.exciter = second::Sexs{};
@@ -103,21 +105,21 @@ TEST(SecondWriting, StaysAtRest_WithoutAnEvent) {
   for (std::size_t k = 0; k < out.t.size(); ++k) ASSERT_NEAR(out.P[k], s.P, 1e-9) << out.t[k];
 }
 
-TEST(SecondWriting, StepSizeDoesNotMatter) {
+TEST(IndependentSimulator, StepSizeDoesNotMatter) {
   const auto coarse = second::simulate(base(), 4.0), fine = second::simulate(base(), 4.0, 60, 1.0 / 9600);
   // Fourth order: with a quarter of the step, 1/256 of the error remains. The difference is therefore the
   // error of the coarse run.
   for (std::size_t k = 0; k < fine.t.size(); ++k) ASSERT_NEAR(coarse.P[k], fine.P[k], 1e-7) << fine.t[k];
 }
 
-TEST(SecondWriting, SaturationAgrees) {
+TEST(IndependentSimulator, SaturationAgrees) {
   second::Setup s = base();
   s.machine.S10 = 0.12, s.machine.S12 = 0.55;
   EXPECT_LT(largest_difference(s, plant(s)), kTolerance);
   EXPECT_GT(largest_difference(s, plant(base())), 10 * kTolerance);
 }
 
-TEST(SecondWriting, SexsAgrees) {
+TEST(IndependentSimulator, SexsAgrees) {
   second::Setup s = base();
   s.exciter = second::Sexs{.ratio = 0.1, .TB = 10, .K = 120, .TE = 0.05, .low = -4, .high = 4};
   sim::plant::Plant p = plant(s);
@@ -126,7 +128,7 @@ TEST(SecondWriting, SexsAgrees) {
   EXPECT_LT(largest_difference(s, p), kTolerance);
 }
 
-TEST(SecondWriting, Tgov1Agrees) {
+TEST(IndependentSimulator, Tgov1Agrees) {
   second::Setup s = base();
   s.governor = second::Tgov1{.R = 0.04, .T1 = 0.4, .high = 0.75, .low = 0, .T2 = 2, .T3 = 7, .Dt = 0.2};
   sim::plant::Plant p = plant(s);
@@ -136,7 +138,7 @@ TEST(SecondWriting, Tgov1Agrees) {
   EXPECT_LT(largest_difference(s, p), kTolerance);
 }
 
-TEST(SecondWriting, IeeestAgrees) {
+TEST(IndependentSimulator, IeeestAgrees) {
   second::Setup s = base();
   s.exciter = second::Sexs{.ratio = 0.1, .TB = 10, .K = 100, .TE = 0.05, .low = -4, .high = 5};
   s.stabiliser = second::Ieeest{.KS = 12, .high = 0.05, .low = -0.05};
@@ -162,7 +164,7 @@ TEST(SecondWriting, IeeestAgrees) {
   EXPECT_LT(largest_difference(s, p), kTolerance);
 }
 
-TEST(SecondWriting, StepUpAgrees) {
+TEST(IndependentSimulator, StepUpAgrees) {
   second::Setup s = base();
   s.transformer = {0.003, 0.12};
   sim::plant::Plant p = plant(s);
@@ -171,7 +173,7 @@ TEST(SecondWriting, StepUpAgrees) {
   EXPECT_LT(largest_difference(s, p), kTolerance);
 }
 
-TEST(SecondWriting, CurrentTransformerErrorAgrees) {
+TEST(IndependentSimulator, CurrentTransformerErrorAgrees) {
   second::Setup right = base(), wrong = base();
   wrong.ct_error = std::polar(1.01, 0.02);
   const auto a = second::simulate(right, 3.0), b = second::simulate(wrong, 3.0);
@@ -190,7 +192,7 @@ TEST(SecondWriting, CurrentTransformerErrorAgrees) {
   }
 }
 
-TEST(SecondWriting, Sawtooth_HasTheStatedValues) {
+TEST(IndependentSimulator, Sawtooth_HasTheStatedValues) {
   second::Setup s = base();
   s.unlisted = second::sawtooth(0.05, 0.5, 1.9, 8.0);
   const auto out = second::simulate(s, 8.0, 240.0);

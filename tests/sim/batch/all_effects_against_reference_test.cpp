@@ -50,7 +50,7 @@ struct Tally {
     for (const auto& [what, count] : near_critical) std::cout << "near critical: " << what << "\n";
     testing::Test::RecordProperty("grids_that_fall", grids_that_fall);
     std::cout << compared << " compared, " << unstable << " unstable, " << refused << " refused, "
-              << grids_that_fall << " grids that do not stand by themselves, " << near_critical.size()
+              << grids_that_fall << " grids unstable without an event, " << near_critical.size()
               << " near critical, " << seen.size() << " effects; worst " << worst << " " << worst_where
               << "\n";
   }

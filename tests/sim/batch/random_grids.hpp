@@ -60,7 +60,7 @@ inline plant::Block draw_block(Slot slot, Draws& draws) {
     e.check(e.user_model.get(), block.p.data(), "draw", problems);
     if (problems.empty() && e.unphysical(block.p.data()).empty()) return block;
   }
-  ADD_FAILURE() << e.name << " refuses values around its standard ones";
+  ADD_FAILURE() << e.name << " refuses values around its defaults";
   return {};
 }
 

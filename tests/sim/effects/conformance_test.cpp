@@ -79,7 +79,7 @@ std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
     }
     if (e.unphysical(p.data()).empty()) return p;
   }
-  ADD_FAILURE() << e.name << ": standard values are not physical";
+  ADD_FAILURE() << e.name << ": no drawn values are physical";
   return e.default_parameters();
 }
 
@@ -111,7 +111,7 @@ TEST(Conformance, RecordsAreComplete) {
     for (int column : e.dyr_columns) EXPECT_LT(column, static_cast<int>(e.parameters.size())) << e.name;
     Problems problems;
     e.check(nullptr, e.default_parameters().data(), "test", problems);
-    EXPECT_TRUE(problems.empty()) << e.name << ": standard values are refused";
+    EXPECT_TRUE(problems.empty()) << e.name << ": default values are refused";
   }
 }
 

@@ -55,7 +55,7 @@ struct Motor {
 
 Complex parallel(Complex a, Complex b) { return a * b / (a + b); }
 
-/// Standard values: Ra 0.013, Xa 0.067, Xm 3.8, R1 0.009, X1 0.17; second cage R2 0.02, X2 0.3.
+/// Default values: Ra 0.013, Xa 0.067, Xm 3.8, R1 0.009, X1 0.17; second cage R2 0.02, X2 0.3.
 TEST(LoadCim5, MatchesItsEquivalentCircuitWithAShunt) {
   for (const int circuit : {0, 1, 2}) {
     Motor m(circuit == 0 ? Changes{} : Changes{{"IT", circuit}, {"R2", 0.02}, {"X2", 0.3}});

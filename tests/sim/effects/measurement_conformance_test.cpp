@@ -95,7 +95,7 @@ TEST(MeasurementConformance, EachParameterWithANullValueActs) {
       p[i] += 0.02 * (r.high - r.null_value);
       EXPECT_FALSE(same_bits(measured(*e, p, swing(120.0)), swing(120.0))) << e->name << "." << r.name;
     }
-    EXPECT_GT(acting, 0) << e->name << ": nothing says how it is switched off";
+    EXPECT_GT(acting, 0) << e->name << ": no parameter has a null value";
   }
 }
 

@@ -74,7 +74,7 @@ std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
     e.check(e.user_model.get(), p.data(), "draw", problems);
     if (problems.empty() && e.unphysical(p.data()).empty()) return p;
   }
-  ADD_FAILURE() << e.name << ": standard values are refused when moved by 5 %";
+  ADD_FAILURE() << e.name << ": values within 5 % of the defaults are refused";
   return e.default_parameters();
 }
 

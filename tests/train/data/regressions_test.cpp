@@ -130,7 +130,8 @@ TEST(Split, AcrossDatasetsTrainsOnOneAndJudgesTheOther) {
   EXPECT_EQ(split.train.size(), 24u);
   for (const auto row : split.train) EXPECT_GE(row, 20u);
   for (std::size_t i = 0; i < split.validation.size(); i += 2)
-    EXPECT_EQ(split.validation[i] / 2, split.validation[i + 1] / 2) << "a point stands on one side";
+    EXPECT_EQ(split.validation[i] / 2, split.validation[i + 1] / 2)
+        << "the rows of a databank point must be in one part of the split";
   labels.judged = 50;
   EXPECT_THROW((void)split_across(labels, 0.2, 1), InputError);
 }

@@ -132,7 +132,7 @@ class Shown final : public networks::Network {
   std::vector<at::Tensor> parameters() override { return {at::zeros({2})}; }
 };
 
-TEST(HeadFull, LearnsAnInputDependentSpreadAndACorrelation) {
+TEST(HeadFull, LearnsAnInputDependentDeviationAndACorrelation) {
   auto generator = at::globalContext().defaultGenerator(at::kCPU);
   generator.set_current_seed(1);
   Shown shown;

@@ -211,7 +211,7 @@ TEST(SavedNetwork, NoiseOfEveryEpochSurvivesAnInterruption) {
   EXPECT_EQ(a["validation_mse"], b["validation_mse"]);
 }
 
-TEST(SavedNetwork, SpreadIsTheErrorOnTheLeftOutGenerator) {
+TEST(SavedNetwork, ErrorsAreThoseOnTheLeftOutGenerator) {
   const SavedWorld world("spread");
   const RunRequest r = world.request("cnn");
   ASSERT_EQ(run(world.stream, r), RunOutcome::done);

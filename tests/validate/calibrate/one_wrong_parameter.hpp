@@ -6,8 +6,8 @@
 
 namespace swingbank::validate::test {
 
-/// Sets `parameter` ("SEXS.K") of the right model too high by `factor`. The model must be judged poor; the
-/// fit must find the value within four standard errors and within 10 % of the truth.
+/// Sets `parameter` ("SEXS.K") of the right model too high by `factor`. Only the parameters must be
+/// judged poor, and the fit must find the value within four standard errors and within 10 % of the truth.
 inline void expect_found(plant::PlantModel model, std::vector<record::Record> records,
                          const std::string& parameter, double factor) {
   model.record_base = records.front().base;

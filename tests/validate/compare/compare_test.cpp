@@ -121,7 +121,7 @@ TEST(CompareTest, PlaysInPower_WithoutAngleAndFrequency) {
 }
 // Noise of P and Q in the fault and switching times known to half a sample cause an error of V afterwards. It
 // must not count as a model error.
-TEST(CompareTest, WidensBoundsBehindFaultsWhenPowerDrives) {
+TEST(CompareTest, WidensBoundsAfterFaults_WhenPowerIsPlayedIn) {
   plant::PlantModel model = example_model();
   model.plant.controls.push_back({sim::library::compiled().find("SEXS"), {0.1, 10, 100, 0.05, -4.0, 5.0}});
   const auto events = [&] {

@@ -76,7 +76,7 @@ TEST(CompareReportTest, JsonHasTheCommonPartOfAllCommands) {
   EXPECT_EQ(j["nameplate"]["missing"][0], "owner");
 }
 
-TEST(EventUseTest, TellsFitFromVerification) {
+TEST(EventUseTest, DistinguishesFitFromVerification) {
   const EventUse none{}, alone{true, {}}, held{true, {"b.csv"}};
   EXPECT_EQ(none.of("a.csv"), "comparison");
   EXPECT_EQ(none.sentence({"a.csv"}), "");

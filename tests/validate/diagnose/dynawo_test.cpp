@@ -123,8 +123,8 @@ TEST(DynawoRecordsFull, FindsWrongInertia) {
     EXPECT_GT(channel.rms_before, 50) << channel.unit;
     EXPECT_LT(channel.rms_after, 0.005 * kMachineMva) << channel.unit;
   }
-  // The record has no noise, so the verdict is "poor" because of the numerical differences between two
-  // programs alone.
+  // The record has no noise, so the numerical differences between two programs alone make the structure
+  // inadequate.
   EXPECT_EQ(c.adequacy, calibrate::Adequacy::structure_poor);
 }
 

@@ -36,13 +36,13 @@ struct Bounded {
   }
 };
 
-TEST(AtBounds, ClampsDrawsToTheBounds) {
+TEST(AtBounds, ContinuesAlongTheBound) {
   Bounded valley(1, 0, 1.0, {});
   ASSERT_GT(valley.solve(), 1.0) << "the bound must stop the first search";
   ASSERT_TRUE(valley.bounds.activate());
   EXPECT_LT(valley.solve(), 1e-9);
   EXPECT_NEAR(valley.at[1], 3, 1e-6);
-  EXPECT_FALSE(valley.bounds.activate()) << "no further parameter may be clamped";
+  EXPECT_FALSE(valley.bounds.activate()) << "the active set must not change";
 }
 TEST(AtBounds, KeepsFixedParameters) {
   Bounded valley(0.5, 1, 1.0, {0});

@@ -18,8 +18,8 @@
 namespace swingbank::validate::user_model_search {
 namespace {
 
-/// Two events as input of the search for user-defined models: a decaying swing, knots as `missing_input` sets
-/// them, and an input given by a function of the speed deviation and of time.
+/// Two events as input of the search for user-defined models: a decaying swing, knots every 0.1 s from the
+/// event on, and an input given by a function of the speed deviation and of time.
 template <class F>
 std::vector<UserModelTrace> traces_with(F input) {
   std::vector<UserModelTrace> all;
