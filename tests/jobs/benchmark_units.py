@@ -7,8 +7,8 @@ transformer would record them at 30/s: four faults, three losses of generation, 
 Writes FOLDER/event1.csv to event12.csv (V in kV, angle in degrees, P in MW, Q in Mvar). Noise: 0.01 % on V, 0.005
 degrees, 0.05 % of the unit's 800 MVA on P and Q. sharp: without filter. class-m: with PMUFILTER of class M for 30/s,
 0.32 s long. It may act at the terminal, because filter and transformer are linear in voltage and current. jumpless-f: f
-instead of the angle, with 1 mHz of noise and without the angle's jumps. meter-f: as jumpless-f, but f is the mean over
-two reports, in which the jumps appear as peaks.
+instead of the angle, with 1 mHz of noise and without the angle's steps. meter-f: as jumpless-f, but f is the mean over
+two reports, in which the steps appear as peaks.
 """
 import cmath
 import math
