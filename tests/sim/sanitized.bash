@@ -15,7 +15,7 @@ supported=$(/lib64/ld-linux-x86-64.so.2 --help | sed -n 's/^ *\(x86-64-v[234]\) 
 status=0
 for level in "${levels[@]}"; do
   if ! grep -qx "$level" <<<"$supported"; then
-    echo "$level: left out, this processor does not have it"
+    echo "$level: skipped, this processor does not have it"
     continue
   fi
   build=$source_folder/build/sanitized-$level

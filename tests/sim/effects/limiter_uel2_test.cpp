@@ -115,7 +115,7 @@ TEST(LimiterUel2, RefusesUnsupportedParameters) {
                 .problems.list()
                 .size(),
             5u);
-  // a point behind the end of the lines
+  // a point beyond the end of the lines
   EXPECT_EQ(ControlBench("UEL2", {{"P6", 1.2}}).problems.list().size(), 1u);
   EXPECT_EQ(ControlBench("UEL2", {{"P1", 0.0},
                                   {"P2", 0.0},

@@ -117,7 +117,7 @@ TEST(PsseRecords, Exac1WithGensalAndHygov) {
   const auto folder = folder_of("EXAC1");
   const grid::Grid grid =
       grid::load_grid(folder / "TVC_System_32.raw", folder / "TVC_System.dyr", Conventions::psse());
-  constexpr std::size_t kVe = 5 + 4 + 3;  // behind GENSAL's and HYGOV's states
+  constexpr std::size_t kVe = 5 + 4 + 3;  // after the states of GENSAL and HYGOV
   expect_agreement(folder / "results_PSSe.csv", {grid, trip(grid, 1, 4), plant_of(grid, "2"), kInnerSteps},
                    {{"V1", kVoltage, false},
                     {"V2", kVoltage, false},

@@ -43,7 +43,7 @@ TEST(PsseRecords, Hygov) {
 
 // HYGOV's .dyr record has no column for the dead-band. Dropping the dead-band silently would change the
 // plant.
-TEST(PsseGovernor, DeadBandIsKeptInADyr) {
+TEST(PsseGovernor, DeadBandIsReported_WhenWrittenToADyr) {
   const auto configs = std::filesystem::path(SWINGBANK_SOURCE) / "configs/networks";
   grid::Grid grid =
       grid::load_grid(configs / "ieee39_genrou.raw", configs / "ieee39_genrou.dyr", Conventions::psse());

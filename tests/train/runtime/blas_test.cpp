@@ -82,7 +82,7 @@ TEST(BlasCheck, LibraryRateIsBelowTheProcessorsMultiplyAddRate) {
   EXPECT_GT(rate.product, 0.1);
   EXPECT_GT(rate.multiply_adds, 1.0);
   EXPECT_LT(rate.share(), 1.25)
-      << "a bound that products exceed says nothing; the clock may move by this much";
+      << "the products exceed the measured upper bound by more than the clock frequency may change";
 }
 
 TEST(BlasCheck, WarnsOfASlowLibrary) {

@@ -174,7 +174,7 @@ TEST_P(CoverageNightly, IntervalsContainTheTruth) {
   const double share = static_cast<double>(covered) / tries, doubt = 2 * std::sqrt(0.95 * 0.05 / tries);
   EXPECT_GE(share, 0.93 - doubt);
   EXPECT_LE(share, 0.97 + doubt);
-  EXPECT_GE(adequate, kCopies - 8);  // one start, no draws: some fits end beside the optimum
+  EXPECT_GE(adequate, kCopies - 8);  // one start, no draws: some fits end at another local optimum
 }
 
 INSTANTIATE_TEST_SUITE_P(Calibrate, CoverageNightly,

@@ -106,8 +106,8 @@ TEST(FitOrderings, ReportsClampedParameter_WhenTheModelKeepsTheOrder) {
   EXPECT_EQ(bounds_text(f.parameters),
             "GENROU.Xdpp (limited by X''d > Xl): at a bound; the 95 % interval is not valid.");
 }
-/// A regulator of gain 2000 behind a lead of eleven times responds to the noise of each sample with its
-/// limits. A search in a public case reached these values and was abandoned because of them.
+/// The noise of each sample drives a regulator of gain 2000, whose lead-lag has a ratio of eleven, from limit
+/// to limit. A search in a public case reached these values and was abandoned because of them.
 TEST(FitSteps, UsesLenientSteps_WhenSmallStepsFail) {
   ExciterExample example(0.2);
   sim::plant::Block exciter{&effect("EXAC1"), effect("EXAC1").default_parameters()};

@@ -101,7 +101,7 @@ TEST_F(LinearSensitivitiesTest, OfRequestedOutputs) {
 TEST_F(LinearSensitivitiesTest, OfMachineAlone) { EXPECT_LT(worst(all()), 0.01); }
 TEST_F(LinearSensitivitiesTest, WithControls) {
   for (const char* name : {"TGOV1", "SEXS"}) add(name);
-  EXPECT_LT(worst(all()), 0.06) << "the ceiling is met somewhere within a step";
+  EXPECT_LT(worst(all()), 0.06) << "the ceiling is reached within a step";
 }
 TEST_F(LinearSensitivitiesTest, WithFastFeedbackAndNoise) {
   add("EXST1");
