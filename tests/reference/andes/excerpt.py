@@ -2,7 +2,8 @@
 """Cuts the ANDES records down to what the tests compare: excerpt.py <folder with *.csv and *.json>.
 
 Writes <case>.csv (every 6th sample from 2 s to 5 s, every 24th elsewhere, and the switching times, where a row
-contains the values just before) and <case>.json (fault, units' bases, values just after each switching, estimated error).
+contains the values just before) and <case>.json (fault, units' bases, values just after each switching, estimated
+error).
 """
 import csv
 import json

@@ -67,7 +67,8 @@ bool beyond_limits(const Effect& e, const MachineCase<double>& k) {
   return false;
 }
 
-/// Physical parameters between the defaults and the middle of their ranges.
+/// Physical parameters: each within 5 % of its default or, if the default is zero, about 1 % of its range
+/// above the lower end.
 std::vector<double> draw(const Effect& e, std::mt19937_64& random) {
   std::uniform_real_distribution<double> u(0.95, 1.05);
   for (int attempt = 0; attempt < 1000; ++attempt) {

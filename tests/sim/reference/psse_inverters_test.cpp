@@ -186,8 +186,8 @@ INSTANTIATE_TEST_SUITE_P(All, PsseRecordsRegulated,
                            return one.index == 0 ? std::string("RefFlag") : std::string("RefFlagQFlag");
                          });
 
-// Nine units at two buses, two of them converters. Columns of the records, after t: angle [degrees], P, Q,
-// speed and field current of every unit in the order of the .raw; voltage and angle of every bus.
+// Nine units, two of them converters, at two of four buses. Columns of the records, after t: angle [degrees],
+// P, Q, speed and field current of every unit in the order of the .raw; voltage and angle of every bus.
 constexpr std::size_t kUnits = 9, kOfUnit = 5, kBuses = 4;
 
 grid::Grid many_units() {

@@ -11,8 +11,8 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-/// Sources: tests/README.md. The files have unpublished revisions, gaps in the channel numbers, and text in
-/// Windows-1251.
+/// Sources: README.md beside the files (psse_folder.hpp). The files name revisions that
+/// the standard does not have, skip channel numbers, and contain text in Windows-1251.
 TEST(RecorderFiles, AreRead) {
   const auto at = sim::test::record_folder("comtrade_files");
   const auto read = [&](const char* cfg, const char* dat) {
