@@ -2,7 +2,7 @@
 // Elements of control block diagrams. The function of an element with a state returns the output and writes
 // the state's derivative. A time constant of zero is a bypass, as in PSS/E: `inverse` then returns 0, and
 // every element treats this value as T = 0. Non-windup limits are declared with the state (`State::low`).
-// Where the output must not overshoot in a trial step, the caller also applies clamp().
+// Where the output must stay within its limits in a trial step too, the caller also applies clamp().
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim {

@@ -1,7 +1,7 @@
 #pragma once
 // Time functions of disturbances: step, pulse and ramp. An effect that uses them must declare each start and
 // end in switching_times(). Before its start, each function returns exactly 0. Integrators evaluate the
-// segment that ends at the start only at earlier times (`kBeforeSwitching`).
+// segment before a start only at times before it (`kBeforeSwitching`).
 #include "sim/core/scalar.hpp"
 
 namespace swingbank::sim {

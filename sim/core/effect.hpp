@@ -173,9 +173,9 @@ struct Conventions {
   static constexpr Conventions andes(double hz = 60.0) { return {false, false, hz}; }
 };
 
-/// Remote measurement of a plant control: voltage of the regulated bus, and current and power of the selected
-/// branch [pu], positive out of the plant. If the parameters select no bus or branch, the values are measured
-/// at the plant's grid side, as are the plant's records.
+/// Remote measurement of a plant control: voltage of the selected bus, and current and power of the selected
+/// branch [pu], positive out of the plant. A plant without a grid has no other bus; the values are then
+/// measured at the plant's grid side, as are the plant's records.
 template <class T>
 struct Far {
   T Vr{}, Vi{}, Ir{}, Ii{}, P{}, Q{};
@@ -345,7 +345,8 @@ struct Effect {
   std::string (*remark)(const double* p) = nullptr;
   /// Returns the times at which the equations jump [s]; nullptr: never.
   std::vector<double> (*switching_times)(const void* user_model, const double* p);
-  /// Applies the instrument to the true phasors; `seed` determines its random numbers. Only for measurements.
+  /// Applies the instrument to the phasors at its input; `seed` determines its random numbers. Only for
+  /// measurements.
   void (*measure)(const double* p, std::uint64_t seed, Phasors& phasors);
   /// Returns the memory [s]: the longest time between an output sample of measure() and an input that affects
   /// it, before or after the sample. nullptr: 0.

@@ -1,6 +1,7 @@
 #pragma once
 // Scalar types of the equations, and the functions that equations may apply to them: + - * / < > <=, select,
-// sqrt, exp, log, sincos, atan2 (only in steady()), square, magnitude, positive_part, clamp, any_positive.
+// sqrt, exp, log, sincos, atan2 (only in steady()), square, magnitude, squared_magnitude, positive_part,
+// clamp, any_positive, value_of (only in messages and conditions).
 #include <cmath>
 #include <tuple>
 
