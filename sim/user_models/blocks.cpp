@@ -149,7 +149,8 @@ std::vector<int> Reader::list(const std::string& key) {
     vertices.push_back(tree ? lower(tree, place) : graph_.constant(1.0));
     if (!graph_[vertices.back()].fixed)
       problem(place, 0, "a coefficient that varies during the run",
-              "a transfer function is linear and constant", "use parameters only");
+              "a transfer function is linear and constant",
+              "use parameters and values at the operating point");
   }
   return vertices;
 }
@@ -164,8 +165,9 @@ void Reader::transfer_function_states(const std::string& name, Block& block) {
   if (a.size() < 2 || a.size() > kHighest + 1 || b.empty() || b.size() > a.size()) {
     if (config_.has(key + "numerator") && config_.has(key + "denominator"))
       problem(key + "denominator", 0,
-              fmt::format("a transfer function of orders {} over {}", b.size(), a.size()),
-              fmt::format("the denominator has 2 to {} coefficients, the numerator no more", kHighest + 1),
+              fmt::format("a transfer function with {} over {} coefficients", b.size(), a.size()),
+              fmt::format("the denominator has 2 to {} coefficients, the numerator at most as many",
+                          kHighest + 1),
               "give coefficients in rising powers of s");
     entry.vertex = graph_.constant(0.0);
     return;

@@ -11,7 +11,7 @@
 
 namespace swingbank::sim::user_models {
 
-/// Returns file:line:column of a character of an expression; the key's value begins with its quote.
+/// Returns file:line:column of a character of an expression; `offset` counts from its opening quote.
 std::string Reader::place(const std::string& key, std::size_t offset) const {
   auto [line, column] = config_.position(key);
   if (line == 0) return config_.where(key);
@@ -149,7 +149,7 @@ int Reader::signal(const Node& n, const std::string& key, int index) {
   if (s.made_in != Slot::machine && !(s.made_in < user_model_.slot)) {
     problem(key, n.at, "signal " + n.name,
             fmt::format("{} is computed before this signal is available", user_model_.output_name()),
-            "read a signal that comes earlier, or its value at the operating point");
+            "read an earlier signal, or this signal's value at the operating point");
     return graph_.constant(0.0);
   }
   return graph_.signal(index);
@@ -174,7 +174,7 @@ int Reader::named(const Node& n, const std::string& key, Named& entry) {
   if (entry.vertex >= 0) return entry.vertex;
   if (entry.open) {
     problem(key, n.at, "a loop through " + n.name, "its value would depend on itself",
-            "break the loop with a state, e.g. a lag whose time constant has a lowest value above zero");
+            "break the loop with a state, e.g. a lag whose time constant has `low` above 0");
     return graph_.constant(0.0);
   }
   entry.open = true;

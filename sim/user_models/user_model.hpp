@@ -1,7 +1,7 @@
 #pragma once
 // User-defined models: effects that are read from text, not compiled. See
 // docs/how-to/add-an-effect.md for the format and configs/user_models/ for examples. A user-defined model
-// runs in the reference integrator, in the batch integrator in double precision and with dual numbers.
+// runs in the reference integrator and, in double precision or with dual numbers, in the batch integrator.
 #include <filesystem>
 #include <string>
 

@@ -134,7 +134,7 @@ class Parser {
     return node(Op::power, {std::move(base)}, at, exponent->value);
   }
   [[noreturn]] static void bad_power(std::size_t at) {
-    fail(at, "an exponent that is no whole number", "powers are products of equal factors",
+    fail(at, "an exponent that is no whole number from 0 to 16", "powers are products of equal factors",
          "use 0 to 16, or exp(a*log(x))");
   }
 

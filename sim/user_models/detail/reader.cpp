@@ -150,7 +150,7 @@ void Reader::read_references() {
   }
 }
 
-/// Returns the weight at `key` of a state's error in step control (State::weight).
+/// Returns the weight at `key` of a state's error in step size control (State::weight).
 double Reader::state_weight(const std::string& key) {
   return config_.optional<double>(key + "weight", 1.0, {1e-6, 1e6, ""});
 }
