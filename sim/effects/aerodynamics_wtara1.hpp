@@ -15,7 +15,7 @@ struct Model {
                                     dyr_name = "WTARA1";
   static constexpr Slot slot = Slot::aerodynamics;
   static constexpr std::string_view description = R"(
-  Paero = P0 - Ka pitch (pitch - Theta0)       pitch [degrees], Theta0 at the operating point
+  Paero = P0 - Ka pitch (pitch - Theta0)       pitch [degrees]; P0, Theta0: at the operating point
 )";
   enum P { Ka, Theta0 };
   static constexpr Source defaults_from = literature::andes("WTARA1, but 0.007 for its gain");

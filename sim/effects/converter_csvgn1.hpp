@@ -22,7 +22,7 @@ struct Model : shared::ControlledCurrent<Model> {
   static constexpr std::string_view description = R"(
   V - Vref - dVref --> [ (1 + s T1)/(1 + s T3) ] --> [ K (1 + s T2)/(1 + s T4), VMIN to VMAX ] --> [ 1/(1 + s T5) ] --> B
          B: [RMIN/MBASE, 1] non-windup, the reactor's susceptance on MBASE
-  Q = (CBASE/MBASE - B) |V|^2         P/|V|^2: a conductance, that of the operating point
+  Q = (CBASE/MBASE - B) |V|^2         P = G |V|^2, G: conductance at the operating point
   speed: frequency of the terminal voltage, measured with the lag Tfreq
   It takes no commands: no converter control may accompany it.
 )";
@@ -37,7 +37,7 @@ struct Model : shared::ControlledCurrent<Model> {
       {"T2", "T2", "s", 1.0, 0.0, 10.0, kNoNullValue, "second lead"},
       {"T3", "T3", "s", 0.154833, 0.0, 50.0, kNoNullValue, "first lag (0: bypass)"},
       {"T4", "T4", "s", 1.0, 0.0, 50.0, kNoNullValue, "second lag (0: bypass)"},
-      {"T5", "T5", "s", 0.005167, 0.001, 10.0, kNoNullValue, "thyristors"},
+      {"T5", "T5", "s", 0.005167, 0.001, 10.0, kNoNullValue, "time constant of the thyristors"},
       lower_limit({"RMIN", "RMIN", "Mvar", 0.0, -10000.0, 10000.0, kNoNullValue,
                    "smallest reactive power of the reactor at rated voltage"}),
       upper_limit(
@@ -133,7 +133,8 @@ struct Model : shared::ControlledCurrent<Model> {
     x[first] = x[lagged] = x[B] / p[K];
     if (value_of(x[lagged]) > value_of(c[most]) || value_of(x[lagged]) < value_of(c[least]))
       return fmt::format(
-          "the operating point needs the regulator at {:.4f} pu, outside VMIN to VMAX = {:g} to {:g} pu",
+          "the operating point needs a regulator output of {:.4f} pu, outside VMIN = {:g} pu to "
+          "VMAX = {:g} pu",
           value_of(x[B]), value_of(p[VMIN]), value_of(p[VMAX]));
     steady_voltage(s, x);
     s.V = sqrt(square_2);

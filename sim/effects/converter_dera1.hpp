@@ -45,8 +45,8 @@ struct Model : shared::ControlledCurrent<Model> {
   I = (Ip - j Iq) V/|V|, below |V| = 0.01 pu in proportion to |V|
   Near a bolted fault the grid cannot accept the whole of Ip at any voltage angle: |V| falls below 0.01 pu.
   Vref0 = 0: the voltage at the operating point.
-  It takes no commands: no converter control may accompany it. Additions to Tm and Efd are added to the
-  commands.
+  It takes no commands: no converter control may accompany it. Additions to Tm and Efd act on Ipcmd and
+  Iqcmd.
 )";
   static constexpr bool takes_commands = false;
   enum P {
@@ -149,8 +149,8 @@ struct Model : shared::ControlledCurrent<Model> {
       {"tvl1", "tvl1", "s", 0.16, 0.0, 999.0, kNoNullValue, "time below Vl1 until tripped units stay off"},
       {"tvh0", "tvh0", "s", 0.16, 0.0, 999.0, kNoNullValue, "time above Vh0 until no unit reconnects"},
       {"tvh1", "tvh1", "s", 0.16, 0.0, 999.0, kNoNullValue, "time above Vh1 until tripped units stay off"},
-      {"Vrfrac", "Vrfrac", "-", 0.7, 0.0, 1.0, 1.0, "fraction that reconnects with the voltage", kAsEffect,
-       shared::kShare},
+      {"Vrfrac", "Vrfrac", "-", 0.7, 0.0, 1.0, 1.0,
+       "fraction of the tripped units that reconnects as V recovers", kAsEffect, shared::kShare},
       {"fl", "fl", "Hz", 56.5, 0.0, 60.0, kNoNullValue, "frequency below which all units trip", kTrips,
        kHertz},
       {"fh", "fh", "Hz", 62.0, 50.0, 999.0, kNoNullValue, "frequency above which all units trip", kTrips,
@@ -400,7 +400,8 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   values.require_ranges({{femax, femin}, {Pmax, Pmin}, {dPmax, dPmin}, {Iqh1, Iql1}});
   values.refuse_negative({dbd2, fdbd2, Kqv, Ddn, Dup, Kpg, Kig, dPmax});
   values.refuse_positive({dbd1, fdbd1, dPmin});
-  values.require_positive({Trf, Tg, Imax, rrpwr}, "the equations divide by it, or are constant without it");
+  values.require_positive({Trf, Tg, Imax, rrpwr},
+                          "the equations divide by it, or the current could not change");
   values.refuse(!(p[Vrfrac] >= 0 && p[Vrfrac] <= 1), Vrfrac, "it is a fraction", "give 0 to 1");
   if (p[vtripFlag] == 0) return;
   for (const auto& [high, low] : {std::pair<int, int>{Vl1, Vl0}, {Vh0, Vh1}, {Vh1, Vl1}})

@@ -193,7 +193,7 @@ struct Model : shared::ControlledCurrent<Model> {
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
   const shared::ValueCheck values(name, parameters, p, where, problems);
   values.require_switches({Lvplsw});
-  values.require_positive({Tg, Tfreq, Rrpwr}, "the equations divide by it, or are constant without it");
+  values.require_positive({Tg, Tfreq, Rrpwr}, "the equations divide by it, or the current could not change");
   values.require_times({Tfltr});
   values.require_above(Brkpt, Zerox, "LVPL must rise with the voltage");
   values.require_above(Lvpnt1, Lvpnt0, "G must rise with the voltage");

@@ -25,7 +25,7 @@ struct Model {
   static constexpr Source defaults_from = literature::andes("WTDTA1");
   static constexpr Source bounds_from = renewable::kWecc;
   static constexpr Parameter parameters[] = {
-      {"H", "H", "s", 3.0, 0.1, 20.0, kNoNullValue, "inertia constant of both masses"},
+      {"H", "H", "s", 3.0, 0.1, 20.0, kNoNullValue, "inertia constant of both masses together"},
       {"DAMP", "DAMP", "pu", 0.0, 0.0, 20.0, 0.0, "damping torque per speed of the generator"},
       {"Htfrac", "Htfrac", "pu/pu", 0.5, 0.0, 1.0, kNoNullValue,
        "the turbine's part of the inertia (0: one mass)"},

@@ -157,7 +157,7 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
   static std::string steady(const T* p, T* c, Signals<T>& s, T* x) {
     Core::reference(c, s);
     if (value_of(renewable::voltage_dip(s.V, c[Core::vdip], c[Core::vup])) > 0.0)
-      return fmt::format("V = {:.4f} pu is a voltage dip: Vdip = {:g}, Vup = {:g} pu", value_of(s.V),
+      return fmt::format("the dip logic acts at V = {:.4f} pu: Vdip = {:g}, Vup = {:g} pu", value_of(s.V),
                          value_of(c[Core::vdip]), value_of(c[Core::vup]));
     const T most_p = renewable::by_voltage(c + of_p, s.V), most_q = renewable::by_voltage(c + of_q, s.V);
     x[after] = x[after_p] = T(0.0);

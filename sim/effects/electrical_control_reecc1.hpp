@@ -49,8 +49,7 @@ struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::
                                         renewable::record::PQFLAG};
   static constexpr std::array kBehind = {
       Parameter{"T", "T", "s", 14400.0, 1.0, 1e6, kNoNullValue,
-                "discharge time at rated power: longer than any run",
-                literature::own("a battery of four hours")},
+                "discharge time at rated power (without effect)", literature::own("a battery of four hours")},
       Parameter{"SOCini", "SOCini", "pu", 0.5, 0.0, 1.0, kNoNullValue, "initial state of charge",
                 literature::own("half full"), literature::derived("a fraction")},
       upper_limit({"SOCmax", "SOCmax", "pu", 0.8, 0.0, 1.0, kNoNullValue, "largest state of charge",

@@ -33,7 +33,7 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
   Vref0 - Vf --> [ dbd1, dbd2 ] --> x Kqv within Iql1, Iqh1 --> Iqv       Iqcmd = Iq + Iqv; for |Thld| after a dip
       its value at the dip's end (Thld > 0) or Iqfrz (Thld < 0)
   Pext (x (1 + wg) if PFLAG = 1) --> [ 1/(1 + s Tpord), rate dPmin to dPmax, Pmin to Pmax ] --Pord--> /Vf --> Ipcmd;
-      for Thld2 after a dip Ipcmd and its limit keep their values at its end
+      for Thld2 after a dip Ipcmd and its limit keep their values at the dip's end
   Iqcmd within VDL1(Vf), Ipcmd within VDL2(Vf): linear between the points (Vq, Iq) and (Vp, Ip), up to the last
       rising voltage; all 0: no limit. Ipcmd >= -Ke times its upper limit.
   |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
@@ -77,7 +77,7 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
       Parameter{"VCMPFLAG", "VCMPFLAG", "code", 1.0, 0.0, 1.0, kNoNullValue,
                 "regulated voltage: 1 behind Rc + jXc, 0 V + Kc Q", kOff, renewable::kFlag}};
   static constexpr std::array kAfterDip = {
-      Parameter{"Iqfrz", "Iqfrz", "pu", 0.0, -2.0, 2.0, 0.0, "Iqcmd for |Thld| after a dip, where Thld < 0"},
+      Parameter{"Iqfrz", "Iqfrz", "pu", 0.0, -2.0, 2.0, 0.0, "Iqcmd for |Thld| after a dip if Thld < 0"},
       Parameter{"Thld", "Thld", "s", 0.0, -10.0, 10.0, 0.0,
                 "time after a dip for which Iqcmd is kept (> 0) or Iqfrz (< 0)"},
       Parameter{"Thld2", "Thld2", "s", 0.0, 0.0, 10.0, 0.0,
@@ -91,7 +91,7 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
                 literature::own("as Trv")},
       Parameter{"Kc", "Kc", "pu", 0.0, 0.0, 1.0, 0.0, "reactive droop", kOff},
       Parameter{"Ke", "Ke", "pu", 0.0, 0.0, 1.0, 0.0,
-                "lower limit of Ipcmd over its upper one, negative (a battery: 1)", kOff,
+                "Ipcmd is at least -Ke times its upper limit (battery: 1)", kOff,
                 literature::derived("a fraction")},
       Parameter{"Vblkl", "Vblkl", "pu", 0.0, -99.0, 1.0, kNoNullValue,
                 "voltage below which the converter is blocked", kOff},
@@ -232,7 +232,7 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
                                value_of(c[low]), value_of(c[high]))
                  : std::string();
     };
-    if (auto why = within("is a voltage dip", Core::vdip, Core::vup); !why.empty()) return why;
+    if (auto why = within("activates the dip logic", Core::vdip, Core::vup); !why.empty()) return why;
     if (auto why = within("blocks the converter", vblkl, vblkh); !why.empty()) return why;
     x[after] = x[after_p] = x[blocked] = T(0.0);
     x[Vcomp] = compensated(c, s);

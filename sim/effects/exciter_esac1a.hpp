@@ -45,13 +45,13 @@ struct Model : shared::AlternatorRectifier<Model> {
       {"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
       {"leadlag", "pu", "state of the lead-lag", kErrorWeight, -1, -1, {iTB}},
       {"Va", "pu", "regulator output", 1.0, lower, upper},
-      {"Ve", "pu", "voltage behind the rectifier", 1.0, none, -1},
+      {"Ve", "pu", "voltage behind the commutating reactance", 1.0, none, -1},
       {"rate", "pu", "state of the rate feedback", kErrorWeight, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const shared::ValueCheck values(name, parameters, p, where, problems);
     AlternatorRectifier::check(p, where, problems);
-    values.require_above(VRMAX, VRMIN, "the range of the alternator's field must not be empty");
+    values.require_above(VRMAX, VRMIN, "the range of the alternator's field voltage must not be empty");
   }
   template <class T>
   static void prepare(const T* p, const Conventions& conventions, T* c) {

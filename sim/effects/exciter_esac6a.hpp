@@ -127,7 +127,11 @@ struct Model : shared::Alternator<Model> {
        .meaning = "state of the field limiter",
        .moved_by = {iTH},
        .bends = true},
-      {.name = "Ve", .unit = "pu", .meaning = "voltage behind the rectifier", .low = none, .bends = true}};
+      {.name = "Ve",
+       .unit = "pu",
+       .meaning = "voltage behind the commutating reactance",
+       .low = none,
+       .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const shared::ValueCheck values(name, parameters, p, where, problems);

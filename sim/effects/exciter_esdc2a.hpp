@@ -9,8 +9,8 @@ struct Model {
   static constexpr std::string_view name = "ESDC2A",
                                     title = "rotating DC exciter with terminal-fed regulator, type DC2A",
                                     source =
-                                        "IEEE Std 421.5-2005, 5.2, type DC2A; PSS/E ESDC2A; the end at "
-                                        "zero: OpenIPSL, ESDC2A",
+                                        "IEEE Std 421.5-2005, 5.2, type DC2A; PSS/E ESDC2A; the lower "
+                                        "limit of zero: OpenIPSL, ESDC2A",
                                     dyr_name = "ESDC2A";
   static constexpr Slot slot = Slot::exciter;
   static constexpr std::string_view variant_of = "EXDC2";
@@ -18,7 +18,7 @@ struct Model {
   As EXDC2, with Efd >= 0, non-windup:
   Vc --> [ 1/(1 + s TR) ] --> Vm
   Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ (1 + s TC)/(1 + s TB) ] --> [ KA/(1 + s TA) ] --> Vr
-         Vr: [V VRMIN, V VRMAX]; its lag returns to a limit within 2 ms, which prevents windup
+         Vr: [V VRMIN, V VRMAX]; its lag returns to a limit with a time constant of 2 ms, which prevents windup
   TE dEfd/dt = Vr - KE Efd - Efd Se(Efd), Efd >= 0         Vf = s KF/(1 + s TF) Efd
   Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2)
   VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE only if positive), VRMIN = -VRMAX

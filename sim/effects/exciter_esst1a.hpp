@@ -75,7 +75,7 @@ struct Model {
                    "maximum field voltage (ceiling) at rated terminal voltage"}),
       lower_limit({"VRMIN", "VRMIN", "pu", -5.0, -100.0, 0.5, kNoNullValue,
                    "minimum field voltage at rated terminal voltage"}),
-      {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "upper ceiling's drop by field current"},
+      {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "drop of the upper ceiling per field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "gain of the rate feedback"},
       {"TF", "TF", "s", 1.0, 0.0, 20.0, kNoNullValue, "rate feedback's time constant"},
       {"KLR", "KLR", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the field-current limiter", kNone},

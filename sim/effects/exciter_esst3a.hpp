@@ -69,8 +69,8 @@ struct Model {
       lower_limit(
           {"VRMIN", "VRMIN", "pu", -10.0, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator"}),
       {"KG", "KG", "pu", 1.0, 0.0, 10.0, 0.0, "feedback of Efd to the inner loop"},
-      {"KP", "KP", "pu", 6.15, 0.0, 100.0, kNoNullValue, "gain of the source from voltage"},
-      {"KI", "KI", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the source from current"},
+      {"KP", "KP", "pu", 6.15, 0.0, 100.0, kNoNullValue, "gain of the source's voltage part"},
+      {"KI", "KI", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the source's current part"},
       upper_limit({"VBMAX", "VBMAX", "pu", 6.9, 0.1, 1000.0, kNoNullValue, "upper limit of the source"}),
       {"KC", "KC", "pu", 0.2, 0.0, 10.0, 0.0, "rectifier's commutating reactance"},
       {"XL", "XL", "pu", 0.081, 0.0, 1.0, 0.0, "reactance of the source's voltage part"},

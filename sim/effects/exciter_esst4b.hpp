@@ -23,8 +23,8 @@ struct Model {
   Vc --> [ 1/(1 + s TR) ] --> Vm
   e = Vref + dVref - Vm + Vs + Vlimiter
   e --> [ KPR + KIR/s ] [VRMIN, VRMAX] --> Vr --> [ 1/(1 + s TA) ] --> Va
-  Va - KG Efd --> [ KPM + KIM/s ] [VMMIN, VMMAX] --> Vmr          (each PI stops integrating at its limit,
-                                                                 within 0.002 pu beyond it)
+  Va - KG Efd --> [ KPM + KIM/s ] [VMMIN, VMMAX] --> Vmr          (each PI stops integrating at its limit, with
+                                                                 a transition of 0.002 pu beyond it)
   Efd = Vmr VB         VB = VE FEX(KC Ifd/VE), at most VBMAX
   VE = |KP' V + j (KI + KP' XL) I|, KP' = KP at angle THETAP         (V, I: phasors at the terminal)
 )";
@@ -51,8 +51,8 @@ struct Model {
                    "lower limit of the inner regulator", kCase}),
       {"KG", "KG", "pu", 0.0, 0.0, 1.1, kNoNullValue, "feedback of Efd to the inner regulator", kAsEffect,
        kRange},
-      {"KP", "KP", "pu", 9.3, 0.0, 20.0, kNoNullValue, "gain of the source from voltage"},
-      {"KI", "KI", "pu", 0.0, 0.0, 20.0, 0.0, "gain of the source from current"},
+      {"KP", "KP", "pu", 9.3, 0.0, 20.0, kNoNullValue, "gain of the source's voltage part"},
+      {"KI", "KI", "pu", 0.0, 0.0, 20.0, 0.0, "gain of the source's current part"},
       upper_limit({"VBMAX", "VBMAX", "pu", 11.63, 0.1, 100.0, kNoNullValue, "upper limit of the source"}),
       {"KC", "KC", "pu", 0.124, 0.0, 1.0, 0.0, "rectifier's commutating reactance",
        literature::own("CIM's XL; its KC is 0.113"), kRange},
@@ -77,8 +77,8 @@ struct Model {
     Vref = source_first + shared::CompoundSource::size,
     coefficients
   };
-  /// Weight in step control: VB, about 10 pu, multiplies the output of the states and gives Efd without a
-  /// lag.
+  /// Weight in step size control: VB, about 10 pu, multiplies the output of the states and gives Efd without
+  /// a lag.
   static constexpr double kSourceWeight = 10.0;
   enum X { Vm, xr, Va, xm };
   static constexpr State states[] = {{"Vm", "pu", "measured voltage", kSourceWeight},

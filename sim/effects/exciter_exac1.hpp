@@ -31,7 +31,7 @@ struct Model : shared::AlternatorRectifier<Model> {
       {"Vm", "pu", "measured voltage", kErrorWeight},
       {"leadlag", "pu", "state of the lead-lag", kErrorWeight},
       {"Vr", "pu", "regulator output", 1.0, lower, upper},
-      {"Ve", "pu", "voltage behind the rectifier", 1.0, none, -1},
+      {"Ve", "pu", "voltage behind the commutating reactance", 1.0, none, -1},
       {"rate", "pu", "state of the rate feedback", kErrorWeight, -1, -1, {iTF}}};
 
   template <class T>

@@ -53,7 +53,7 @@ struct Model : shared::AlternatorRectifier<Model> {
     all[KH] = {"KH",    "KH", "pu", 0.0, 0.0, 100.0, 0.0, "feedback of the alternator's field current",
                kDefault};
     all[VLR] = upper_limit({"VLR", "VLR", "pu", 20.0, 0.0, 1000.0, kNoNullValue,
-                            "field current at which the limiter ends",
+                            "reference of the field current limiter",
                             literature::own("beyond the forcing of the default alternator")});
     return all;
   }();
@@ -64,13 +64,17 @@ struct Model : shared::AlternatorRectifier<Model> {
       {"Vm", "pu", "measured voltage", kErrorWeight, -1, -1, {iTR}},
       {"leadlag", "pu", "state of the lead-lag", kErrorWeight, -1, -1, {iTB}},
       {"Va", "pu", "regulator output", 1.0, lower, upper},
-      {.name = "Ve", .unit = "pu", .meaning = "voltage behind the rectifier", .low = none, .bends = true},
+      {.name = "Ve",
+       .unit = "pu",
+       .meaning = "voltage behind the commutating reactance",
+       .low = none,
+       .bends = true},
       {"rate", "pu", "state of the rate feedback", kErrorWeight, -1, -1, {iTF}}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const shared::ValueCheck values(name, parameters, p, where, problems);
     AlternatorRectifier::check(p, where, problems);
-    values.require_above(VRMAX, VRMIN, "the range of the alternator's field must not be empty");
+    values.require_above(VRMAX, VRMIN, "the range of the alternator's field voltage must not be empty");
     values.require_positive({KB}, "an exciter needs a gain");
     values.refuse(!(p[KL] > 0), KL, "the limiter's gate would stay at zero",
                   "give KL > 0, and a large VLR for no limiter");

@@ -18,7 +18,7 @@ struct Model : shared::DcBehindLeadLag<Model> {
   static constexpr std::string_view description = R"(
   Vc --> [ 1/(1 + s TR) ] --> Vm
   Vref + dVref - Vm + Vs + Vlimiter - Vf --> [ (1 + s TC)/(1 + s TB) ] --> [ KA/(1 + s TA) ] --> Vr
-         Vr: [V VRMIN, V VRMAX]; its lag returns to a limit within 2 ms, which prevents windup
+         Vr: [V VRMIN, V VRMAX]; its lag returns to a limit with a time constant of 2 ms, which prevents windup
   TE dEfd/dt = Vr - KE Efd - Efd Se(Efd)         Vf = s KF/(1 + s TF) Efd
   Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2)
   VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE only if positive), VRMIN = -VRMAX
@@ -34,9 +34,9 @@ struct Model : shared::DcBehindLeadLag<Model> {
       {"TA", "TA", "s", 0.05, 0.0, 10.0, kNoNullValue, "regulator time constant (0: none)",
        literature::griddyn("dynamicsWECC.dyr")},
       {"TB", "TB", "s", 2.0, 0.0, 50.0, kNoNullValue, "lag (0: bypass)",
-       literature::own("half the transient gain; the case files have hardly any")},
+       literature::own("halves the transient gain; the case files have hardly any lead-lag")},
       {"TC", "TC", "s", 1.0, 0.0, 50.0, kNoNullValue, "lead",
-       literature::own("half the transient gain; the case files have hardly any")},
+       literature::own("halves the transient gain; the case files have hardly any lead-lag")},
       upper_limit({"VRMAX", "VRMAX", "pu", 7.3, 0.0, 100.0, kNoNullValue,
                    "upper limit of Vr at rated voltage (0: from saturation at E2)"}),
       lower_limit(

@@ -19,7 +19,7 @@ struct Model {
       title = "excitation system with a PI regulator",
       source =
           "CIM ExcPIC; OPAL-RT's Modelica library (karlbenoit-at-opal/modelica-ephasor-components), EXPIC1: "
-          "blocks, columns, what is fed back; PSS/E EXPIC1",
+          "blocks, columns, signal of the rate feedback; PSS/E EXPIC1",
       dyr_name = "EXPIC1";
   static constexpr Slot slot = Slot::exciter;
   static constexpr std::string_view variant_of = "EXST1";
@@ -76,7 +76,8 @@ struct Model {
       lower_limit(
           {"VRMIN", "VRMIN", "pu", -0.87, -1000.0, 0.0, kNoNullValue, "lower limit of the regulator"}),
       {"KF", "KF", "pu", 0.0, 0.0, 10.0, 0.0, "gain of the rate feedback"},
-      {"TF1", "TF1", "s", 1.0, 0.0, 20.0, kNoNullValue, "first time constant of the rate feedback", kUsed},
+      {"TF1", "TF1", "s", 1.0, 0.0, 20.0, kNoNullValue, "first time constant of the rate feedback",
+       literature::own("a typical rate feedback, used if KF > 0; CIM has 0")},
       {"TF2", "TF2", "s", 0.0, 0.0, 20.0, kNoNullValue,
        "second time constant of the rate feedback (0: none)"},
       upper_limit({"EFDMAX", "EFDMAX", "pu", 8.0, 0.0, 1000.0, kNoNullValue, "upper limit of the bridge"}),
@@ -87,8 +88,8 @@ struct Model {
       {"SE1", "SE(E1)", "-", 0.0, 0.0, 2.0, 0.0, "saturation factor at E1"},
       {"E2", "E2", "pu", 0.0, 0.0, 50.0, kNoNullValue, "second point of saturation"},
       {"SE2", "SE(E2)", "-", 0.0, 0.0, 2.0, 0.0, "saturation factor at E2"},
-      {"KP", "KP", "pu", 6.5, 0.0, 100.0, kNoNullValue, "gain of the source from voltage"},
-      {"KI", "KI", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the source from current"},
+      {"KP", "KP", "pu", 6.5, 0.0, 100.0, kNoNullValue, "gain of the source's voltage part"},
+      {"KI", "KI", "pu", 0.0, 0.0, 100.0, 0.0, "gain of the source's current part"},
       {"KC", "KC", "pu", 0.08, 0.0, 10.0, 0.0, "rectifier's commutating reactance"}};
   static constexpr int dyr_columns[] = {TR,  KA,     TA1,    VR1, VR2, TA2, TA3, TA4, VRMAX, VRMIN, KF, TF1,
                                         TF2, EFDMAX, EFDMIN, KE,  TE,  E1,  SE1, E2,  SE2,   KP,    KI, KC};
@@ -240,7 +241,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   values.require_times({TR, TA1, TA2, TA3, TA4, TF1, TF2, TE});
   values.refuse_negative({KF, KP, KI, KC, SE1, SE2});
   values.refuse(p[E1] == p[E2] && p[SE1] != p[SE2], values.text(E1, E2),
-                "one voltage cannot have two saturation factors", "give two points");
+                "one voltage cannot have two saturation factors", "give two different voltages");
   values.refuse(p[KF] > 0 && p[TF1] == 0 && p[TF2] == 0, values.text(KF, TF1, TF2),
                 "a derivative needs a lag", "give TF1 > 0, or KF = 0 for no feedback");
   const bool at_once = p[TA4] > 0 ? p[TA2] == 0 && p[TA3] > 0 : p[TA2] == 0 || p[TA3] > 0;

@@ -43,7 +43,7 @@ struct Model {
                        "the negative ceiling of a bridge is slightly smaller than its positive ceiling")}),
       {"KC", "KC", "pu", 0.05, 0.0, 1.0, 0.0, "drop of the ceilings per field current"},
       {"KF", "KF", "pu", 0.0, 0.0, 1.0, 0.0, "gain of the rate feedback"},
-      {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"}};
+      {"TF", "TF", "s", 1.0, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0 only if KF = 0)"}};
   static constexpr int dyr_columns[] = {TR, VIMAX, VIMIN, TC, TB, KA, TA, VRMAX, VRMIN, KC, KF, TF};
   enum C { iTR, vimax, vimin, lead, iTB, gain, iTA, vrmax, vrmin, drop, feedback, iTF, Vref, coefficients };
   enum X { Vm, leadlag, Va, rate };

@@ -35,7 +35,7 @@ struct Model : shared::RotatingDc<Model> {
       kTE,
       kKF,
       {"TF1", "TF1", "s", 1.0, 0.02, 20.0, kNoNullValue,
-       "first time constant of the rate feedback (0: with KF = 0)"},
+       "first time constant of the rate feedback (0 only if KF = 0)"},
       {"TF2", "TF2", "s", 0.8, 0.0, 20.0, kNoNullValue, "second time constant of the rate feedback (0: none)",
        literature::own("that of the exciter, which it represents")},
       kE1,

@@ -45,9 +45,9 @@ struct Model {
       lower_limit({"VRMIN", "VRMIN", "pu", -1.2, -100.0, 0.0, kNoNullValue, "lower limit of Vr"}),
       {"TE", "TE", "s", 0.5, 0.01, 10.0, kNoNullValue, "exciter time constant"},
       {"KF", "KF", "pu", 0.02, 0.0, 1.0, 0.0, "gain of the rate feedback"},
-      {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"},
-      {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNullValue, "gain of the source from voltage"},
-      {"KI", "KI", "pu", 1.86, 0.0, 100.0, 0.0, "gain of the source from current"},
+      {"TF", "TF", "s", 0.53, 0.01, 20.0, kNoNullValue, "rate feedback's time constant (0 only if KF = 0)"},
+      {"KP", "KP", "pu", 1.19, 0.0, 100.0, kNoNullValue, "gain of the source's voltage part"},
+      {"KI", "KI", "pu", 1.86, 0.0, 100.0, 0.0, "gain of the source's current part"},
       upper_limit(
           {"VBMAX", "VBMAX", "pu", 2.82, 0.1, 100.0, kNoNullValue, "upper limit of the field supply"}),
       {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "self-excitation constant"}};
@@ -103,7 +103,7 @@ struct Model {
     c[self] = p[KE];
     Feed::prepare<T>({p[KP], p[KI], zero, zero, zero, far}, c + source_first);
   }
-  /// Returns the source's contribution to VB [pu]. Sets `share` to the fraction of the voltage that remains.
+  /// Returns the source's contribution to VB [pu]. Sets `share` to the fraction of VB that remains.
   template <class T>
   static T supply(const T* c, const Signals<T>& s, T& share) {
     using std::sqrt;

@@ -19,7 +19,7 @@ struct Model : shared::Alternator<Model> {
       name = "REXS",
       title = "rotating excitation system, general purpose",
       source =
-          "IEC 61970-302, ExcREXS (parameters, what is fed back); OpenIPSL REXSYS "
+          "IEC 61970-302, ExcREXS (parameters, rate feedback); OpenIPSL REXSYS "
           "(github.com/marcelofcastro/OpenIPSL, c482ff5) and InterPSS RexsysExciter "
           "(github.com/InterPSS-Project/ipss-plugin, 0cc993b): blocks, columns; PowerWorld's help, REXS: PSLF's names; "
           "PSS/E REXSYS",
@@ -30,9 +30,9 @@ struct Model : shared::Alternator<Model> {
   e = Vref + dVref - Vm + Vs + Vlimiter - Vf within [-VIMAX, VIMAX]
   e --> [ KVP + KVI/s ] --> [ (1 + s TC1)/(1 + s TB1) ] --> [ (1 + s TC2)/(1 + s TB2) ] --> [ 1/(1 + s TA) ] --> Vr
   Vr - KH Vfe --> [ KIP + KII/s ] --> [ 1/(1 + s TP) ] --> Vfield
-         Vr: F [VRMIN, VRMAX], Vfield: F [VFMIN, VFMAX], F = 1 + FLIMF (V - 1); both lags return to a limit
-         within 2 ms, and KII stops integrating while its regulator is at one (InterPSS; OpenIPSL and
-         OPAL-RT allow windup). KVI is limited only through its input.
+         Vr: F [VRMIN, VRMAX], Vfield: F [VFMIN, VFMAX], F = 1 + FLIMF (V - 1); both lags return to a limit with
+         a time constant of 2 ms, and KII stops integrating while its regulator is at a limit (InterPSS; OpenIPSL
+         and OPAL-RT allow windup). KVI is limited only through its input.
   TE dVe/dt = Vfield - Vfe, Ve >= 0                Vfe = KE Ve + Ve Se(Ve) + KD Ifd
   Vf = s KF/(1 + s TF) (1 + s TF1)/(1 + s TF2) of Vr (FBF = 0), Vfe (1) or Efd (2)
   Efd = Ve FEX(IN), IN = KC Ifd/Ve                 FEX = 1 - IN/sqrt(3)         IN <= sqrt(3)/4
@@ -182,7 +182,11 @@ struct Model : shared::Alternator<Model> {
        .meaning = "alternator's field voltage",
        .moved_by = {iTP},
        .bends = true},
-      {.name = "Ve", .unit = "pu", .meaning = "voltage behind the rectifier", .low = none, .bends = true}};
+      {.name = "Ve",
+       .unit = "pu",
+       .meaning = "voltage behind the commutating reactance",
+       .low = none,
+       .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const shared::ValueCheck values(name, parameters, p, where, problems);

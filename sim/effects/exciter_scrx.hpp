@@ -44,7 +44,7 @@ struct Model : shared::SimplifiedExciter<Model> {
     const shared::ValueCheck values(name, parameters, p, where, problems);
     SimplifiedExciter::check(p, where, problems);
     values.require_switches({CSWITCH});
-    values.refuse_negative({RATIO}, "a ratio of resistances");
+    values.refuse_negative({RATIO}, "a ratio of resistances cannot be negative");
   }
 
   template <class T>

@@ -23,7 +23,7 @@ struct Model {
   Vref + dVref - Vm + Vs + Vlimiter --> [ (1 + s TC1)/(1 + s TB1) ] --> [ (1 + s TC2)/(1 + s TB2) ] --> u
          both lead-lags: [VRMIN/KR, VRMAX/KR] non-windup
   KR u --> [VRMIN, VRMAX] --> - KC Ifd --> [ 1/(1 + s T1) ] --> Efd, [V VRMIN, V VRMAX]
-         Efd's state returns to a crossed limit within 2 ms
+         Efd's state returns to a crossed limit with a time constant of 2 ms
   The gates of other limiters are not modelled, so that their lead-lags (TUC, TUB, TOC, TOB) have no effect:
   limiters add to the error.
 )";

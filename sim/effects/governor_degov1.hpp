@@ -18,7 +18,7 @@ struct Model : shared::Diesel<Model> {
          --> [ K (1 + s T4)/(s (1 + s T5)(1 + s T6)) ] --> throttle; it and the integral: [TMIN, TMAX], non-windup
   f: throttle (M = 0), electrical power behind 1/(1 + s TE) (M = 1)
   Pm = (1 + w) exp(-s TD) throttle
-  exp(-s TD): Pade approximation of orders 3 and 4; T1 = 0: no control box; T5 = 0: neither this lag nor the lead
+  exp(-s TD): Pade approximation of orders 3 and 4; T1 = 0: no control box; T5 = 0: neither the lag T5 nor the lead T4
 )";
   enum P { M, T1, T2, T3, K, T4, T5, T6, TD, TMAX, TMIN, DROOP, TE };
   static constexpr Parameter parameters[] = {

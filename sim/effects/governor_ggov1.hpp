@@ -74,7 +74,7 @@ struct Model {
   };
   static constexpr Source defaults_from = literature::openipsl("test of GGOV1");
   static constexpr Source bounds_from = literature::own(
-      "sign required by the equations; at least five times CIM's GovCT1, or 99 and 999 (none)");
+      "sign required by the equations; at least five times CIM's GovCT1; 99 and 999: no limit");
   static constexpr Parameter parameters[] = {
       {"Rselect", "Rselect", "code", 1.0, -2.0, 1.0, kNoNullValue,
        "droop feedback: 1 electrical power, 0 none, -1 valve, -2 requested stroke", literature::cim("GovCT1"),
@@ -93,7 +93,7 @@ struct Model {
       upper_limit({"Vmax", "Vmax", "pu", 1.0, 0.0, 2.0, kNoNullValue, "upper limit of the valve", kAsEffect,
                    literature::own("twice the rated opening")}),
       lower_limit({"Vmin", "Vmin", "pu", 0.15, -0.5, 1.0, kNoNullValue, "lower limit of the valve", kAsEffect,
-                   literature::own("from half closed beyond the seat to the rated opening")}),
+                   literature::own("from half a stroke below the closed valve to the rated opening")}),
       {"Tact", "Tact", "s", 0.5, 0.01, 20.0, kNoNullValue, "actuator time constant"},
       {"Kturb", "Kturb", "pu/pu", 1.5, 0.1, 10.0, kNoNullValue, "turbine gain"},
       {"Wfnl", "Wfnl", "pu", 0.2, 0.0, 1.0, kNoNullValue, "fuel flow at no load"},
@@ -321,7 +321,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     values.refuse(!(p[i] < 0), i, "the output would be constant", "give a value < 0");
   values.refuse_negative({R, Tpelec, maxerr, Kpgov, Kigov, Kdgov, Tb, Tc, Tfload, Kpload, Kiload, Kimw, Aset,
                           Ka, Trate, db, Tsa, Tsb},
-                         "it is a magnitude");
+                         "it cannot be negative");
   values.refuse_positive({minerr}, "a lower limit of the error cannot be positive");
   values.require_above(Vmax, Vmin, "the range of the valve must not be empty");
   values.refuse(!(p[Vmin] < kFullLoad), Vmin, "the load limiter's output is at most 1 pu", "give Vmin < 1");

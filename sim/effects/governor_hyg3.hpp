@@ -32,13 +32,13 @@ struct Model {
   static constexpr Slot slot = Slot::governor;
   static constexpr std::string_view variant_of = "HYGOV";
   static constexpr std::string_view description = R"(
-  u = ref + (Rgate + Relec) dPref - Relec P/(1 + s Tt)          b(w): 0 from dbL to dbH, beyond it the distance
+  u = ref + (Rgate + Relec) dPref - Relec P/(1 + s Tt)   b(w): 0 from dbL to dbH, beyond it the distance to the edge
   flag 1:  u - b(w) - Rgate CV --> [ 1/(1 + s Td) ] --> [ K2 + Ki/s + s K1/(1 + s Tf) ] --> CV
   flag 0:  b(w) --> [ 1/(1 + s Td) ] --> [ s K1/(1 + s Tf) + s^2 K2/(1 + s Tf)^2 ] --y
            u - Rgate CV - y --> [ Ki/s ] --> CV
-  CV, and what Ki integrates: Pmin to Pmax
+  CV and the integral of Ki: Pmin to Pmax
   CV - GV --> [ Kg/(1 + s Tp), VELclose to VELopen ] --> [ 1/s, Pmin to Pmax ] --> gate --> [ backlash ] --> GV
-  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms to be integrable
+  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms, so that it can be integrated
   PGV: linear between (0, 0), (GV1, PGV1) to (GV6, PGV6), (1, 1); the ends only if the curve rises there; no
        points: PGV = GV
   TW dq/dt = H0 - h            h = (q/PGV)^2, PGV not below 0.01
@@ -95,12 +95,14 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"FLAG", "flag", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: PID, 0: double derivative", kAsEffect,
        shared::kCode},
-      {"RGATE", "Rgate", "pu", 0.0, 0.0, 1.0, kNoNullValue, "permanent droop by the governor's output"},
-      {"RELEC", "Relec", "pu", 0.05, 0.0, 1.0, kNoNullValue, "permanent droop by the electrical power"},
+      {"RGATE", "Rgate", "pu", 0.0, 0.0, 1.0, kNoNullValue,
+       "permanent droop, feedback of the governor's output"},
+      {"RELEC", "Relec", "pu", 0.05, 0.0, 1.0, kNoNullValue,
+       "permanent droop, feedback of the electrical power"},
       {"TT", "Tt", "s", 0.2, 0.0, 20.0, 0.0, "lag of the power feedback (0: none)"},
       {"TD", "Td", "s", 0.05, 0.0, 10.0, 0.0, "input filter (0: none)"},
       {"K2", "K2", "pu", 2.5, 0.0, 100.0, kNoNullValue,
-       "proportional gain (flag 1), double derivative (flag 0) [s2]", kOfPid},
+       "proportional gain (flag 1), double derivative (flag 0) [s^2]", kOfPid},
       {"KI", "Ki", "1/s", 0.5, 0.0, 100.0, kNoNullValue, "integral gain"},
       {"K1", "K1", "s", 0.01, 0.0, 100.0, 0.0, "derivative gain"},
       {"TF", "Tf", "s", 0.1, 0.0, 10.0, kNoNullValue, "washout of the derivatives"},
@@ -294,7 +296,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
                 "the dead-band must contain rated speed", "give dbH >= 0 and dbL <= 0");
   values.refuse_negative({RGATE, RELEC, TT, TD, K2, KI, K1, TP, DB2, QNL, TW, DTURB, TRATE},
                          "gains, times and widths cannot be negative");
-  values.require_positive({KG, H0, AT}, "HYG3 divides by it, or is constant without it");
+  values.require_positive({KG, H0, AT}, "HYG3 divides by it, or its output could not change");
   Pid::check(values, K2, p[FLAG] == 0 ? 0.0 : p[K2], KI, p[KI], K1, p[FLAG] == 0 ? p[K1] + p[K2] : p[K1], TF,
              p[TF]);
   values.refuse(!(p[VELOPEN] > 0 && p[VELCLOSE] < 0), values.text(VELOPEN, VELCLOSE),

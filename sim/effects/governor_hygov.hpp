@@ -24,7 +24,7 @@ struct Model {
   b(w): 0 within +-db, beyond it the distance to the edge (HYGOVD; db = 0 is HYGOV)
   Tf de/dt = nref + R dPref - b(w) - R c - e
   r dc/dt = e/Tr + de/dt     -VELM <= dc/dt <= VELM, GMIN <= c <= GMAX, both without wind-up
-  Tg dg/dt = c - g           gate opening (never below 0.01: a shut gate leaks)
+  Tg dg/dt = c - g           gate opening; in h at least 0.01 (a shut gate leaks)
   TW dq/dt = 1 - h           h = (q/g)^2
   Pm = At h (q - qNL) - Dturb w g
 )";
@@ -58,7 +58,8 @@ struct Model {
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const shared::ValueCheck values(name, parameters, p, where, problems);
-    values.require_positive({r, Tr, Tf, Tg, VELM, TW, At}, "HYGOV divides by it, or is constant without it");
+    values.require_positive({r, Tr, Tf, Tg, VELM, TW, At},
+                            "HYGOV divides by it, or its output could not change");
     values.refuse(!(p[GMAX] > p[GMIN] && p[GMIN] >= 0), values.text(GMAX, GMIN),
                   "the range of the gate must not be empty or negative", "give GMAX > GMIN >= 0");
     values.refuse_negative({db}, "a width cannot be negative");

@@ -1,5 +1,5 @@
 #pragma once
-// IEEEG3: hydro turbine, linear in its water column, and a dashpot governor with a pilot valve.
+// IEEEG3: hydro turbine with a linear water column, and a dashpot governor with a pilot valve.
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
@@ -39,10 +39,10 @@ struct Model {
       {"DELTA", "delta", "pu", 0.5, 0.0, 5.0, 0.0, "temporary droop"},
       {"TR", "TR", "s", 12.0, 0.0, 100.0, kNoNullValue, "dashpot time constant (0: no temporary droop)"},
       {"TW", "TW", "s", 2.0, 0.0, 30.0, 0.0, "water starting time"},
-      {"A11", "a11", "-", 0.5, 0.0, 5.0, kNoNullValue, "flow by head", kLossless},
-      {"A13", "a13", "-", 1.0, 0.0, 5.0, kNoNullValue, "flow by gate", kLossless},
-      {"A21", "a21", "-", 1.5, 0.0, 5.0, kNoNullValue, "power by head", kLossless},
-      {"A23", "a23", "-", 1.0, 0.01, 5.0, kNoNullValue, "power by gate", kLossless}};
+      {"A11", "a11", "-", 0.5, 0.0, 5.0, kNoNullValue, "change of flow per change of head", kLossless},
+      {"A13", "a13", "-", 1.0, 0.0, 5.0, kNoNullValue, "change of flow per change of gate", kLossless},
+      {"A21", "a21", "-", 1.5, 0.0, 5.0, kNoNullValue, "change of power per change of head", kLossless},
+      {"A23", "a23", "-", 1.0, 0.01, 5.0, kNoNullValue, "change of power per change of gate", kLossless}};
   static constexpr int dyr_columns[] = {TG, TP, UO, UC, PMAX, PMIN, SIGMA, DELTA, TR, TW, A11, A13, A21, A23};
   enum C {
     iTG,
@@ -75,7 +75,7 @@ struct Model {
                   "the gate must be able to open and to close", "give UO > 0 and UC < 0");
     values.require_above(PMAX, PMIN, "the range of the gate must not be empty");
     values.refuse(!(p[A11] >= 0) || (p[TW] > 0 && p[A11] == 0 && p[A13] * p[A21] != 0),
-                  values.text(A11, A13, A21), "the water column would lead without a lag",
+                  values.text(A11, A13, A21), "the water column would have a lead without a lag",
                   "give a11 > 0, or TW = 0 for no water column");
   }
 

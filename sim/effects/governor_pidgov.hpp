@@ -75,7 +75,7 @@ struct Model {
       {"P3", "P3", "pu", 1.05, 0.0, 5.0, kNoNullValue, "power at full opening", kCurve},
       upper_limit({"GMAX", "Gmax", "pu", 1.0, 0.0, 2.0, kNoNullValue, "upper limit of the gate"}),
       lower_limit({"GMIN", "Gmin", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the gate"}),
-      {"ATW", "Atw", "-", 1.1, 0.0, 10.0, kNoNullValue, "factor of Tw"},
+      {"ATW", "Atw", "-", 1.1, 0.0, 10.0, kNoNullValue, "factor of the water starting time Tw"},
       {"TW", "Tw", "s", 1.0, 0.0, 30.0, 0.0, "water starting time"},
       {"VELMAX", "Velmax", "pu/s", 0.2, 0.001, 10.0, kNoNullValue, "fastest opening"},
       {"VELMIN", "Velmin", "pu/s", -0.2, -10.0, -0.001, kNoNullValue, "fastest closing, negative"}};
@@ -120,7 +120,7 @@ struct Model {
   static void check(const double* p, const std::string& where, Problems& problems) {
     const shared::ValueCheck values(name, parameters, p, where, problems);
     values.require_switches({FLAG});
-    values.require_positive({TA, TB, VELMAX}, "PIDGOV divides by it, or is constant without it");
+    values.require_positive({TA, TB, VELMAX}, "PIDGOV divides by it, or its output could not change");
     values.refuse(!(p[VELMIN] < 0), VELMIN, "the gate closes with a negative velocity", "give Velmin < 0");
     values.refuse_negative({RPERM, TREG, KP, KI, KD, ATW, TW}, "gains and times cannot be negative");
     values.refuse(!(p[KI] > 0) && !(p[KP] > 0 && p[RPERM] > 0), values.text(KI, KP, RPERM),
@@ -134,7 +134,7 @@ struct Model {
   static std::string_view unphysical(const double* p) {
     return p[G0] < p[G1] && p[G1] < p[G2] && p[G2] < 1.0 && p[P1] < p[P2] && p[P2] < p[P3]
                ? ""
-               : "the curve falls";
+               : "G0 < G1 < G2 < 1, P1 < P2 < P3";
   }
 
   template <class T>

@@ -30,7 +30,7 @@ struct Model {
       lower_limit({"VMIN", "VMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the valve", kAsEffect,
                    literature::own(
                        "no turbine brakes with more than its rating; dynamicsWECC.dyr (GridDyn) has -1.5")}),
-      {"T2", "T2", "s", 2.0, 0.0, 30.0, kNoNullValue, "numerator; T2/T3 is the high-pressure share of power",
+      {"T2", "T2", "s", 2.0, 0.0, 30.0, kNoNullValue, "lead; T2/T3 is the high-pressure share of power",
        literature::own("a high-pressure share of 2/7; CIM has 3 of 10 s")},
       {"T3", "T3", "s", 7.0, 0.0, 60.0, kNoNullValue, "reheater time constant (0: none)",
        literature::own("shorter than CIM's 10 s")},

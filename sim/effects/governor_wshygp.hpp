@@ -1,6 +1,5 @@
 #pragma once
-// WSHYGP: hydro turbine, linear in its water column, and a PID governor with a curve of the gate and a
-// backlash.
+// WSHYGP: hydro turbine with a linear water column, and a PID governor with a gate curve and a backlash.
 
 #include "sim/core/blocks.hpp"
 #include "sim/core/effect.hpp"
@@ -22,7 +21,7 @@ struct Model {
       source =
           "CIM GovHydroPID; GridPACK wshygp (github.com/GridOPTICS/GridPACK): blocks, columns; OPAL-RT's "
           "Modelica library (karlbenoit-at-opal/modelica-ephasor-components), WSHYGP: backlash, limits, "
-          "what the droop acts on; PSS/E WSHYGP",
+          "signal of the droop; PSS/E WSHYGP",
       dyr_name = "WSHYGP";
   static constexpr Slot slot = Slot::governor;
   static constexpr std::string_view variant_of = "HYGOV";
@@ -31,7 +30,7 @@ struct Model {
          back: CV (TT = 0), P/(1 + s TT) (TT > 0)         b(w): 0 within +-db1, beyond it the distance to the edge
   CV - GV --> [ KG/(1 + s TP), VELclose to VELopen ] --> [ 1/s, PMIN to PMAX ] --> gate --> [ backlash ] --> GV
   GV --> [ NGV ] --> [ (1 + s Aturb Tturb)/(1 + s Bturb Tturb) ] --> Pm
-  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms to be integrable
+  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms, so that it can be integrated
   NGV: linear between (GV1, PGV1) and (GV5, PGV5), up to the last ascending point; no points: GV
   Power and gate are per unit of TRATE (0: the machine's base). VELclose: only the magnitude counts.
 )";
@@ -102,8 +101,8 @@ struct Model {
       shared::kCurvePoints[7],
       shared::kCurvePoints[8],
       shared::kCurvePoints[9],
-      {"ATURB", "Aturb", "-", -1.0, -10.0, 10.0, kNoNullValue, "turbine's lead over Tturb"},
-      {"BTURB", "Bturb", "-", 0.5, 0.0, 10.0, kNoNullValue, "turbine's lag over Tturb"},
+      {"ATURB", "Aturb", "-", -1.0, -10.0, 10.0, kNoNullValue, "turbine's lead as a multiple of Tturb"},
+      {"BTURB", "Bturb", "-", 0.5, 0.0, 10.0, kNoNullValue, "turbine's lag as a multiple of Tturb"},
       {"TTURB", "Tturb", "s", 0.8, 0.0, 30.0, 0.0, "turbine time constant (0: none)"},
       {"TRATE", "TRATE", "MW", 0.0, 0.0, 10000.0, 0.0, "turbine rating (0: the machine's base)"}};
   static constexpr auto dyr_columns = shared::columns_to<TRATE>();
@@ -151,7 +150,7 @@ struct Model {
                   "the gate must be able to open and to close", "give VELopen > 0 and VELclose other than 0");
     values.require_above(PMAX, PMIN, "the range of the gate must not be empty");
     values.refuse(p[TTURB] > 0 && p[BTURB] == 0.0 && p[ATURB] != 0.0, values.text(BTURB, ATURB),
-                  "the water column would lead without a lag",
+                  "the water column would have a lead without a lag",
                   "give Bturb > 0, or Tturb = 0 for no water column");
     Curve::check(values, p, kGates, kPowers);
   }

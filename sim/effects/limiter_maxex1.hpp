@@ -19,8 +19,8 @@ struct Model {
   static constexpr std::string_view variant_of = "MAXEX2";
   static constexpr std::string_view description = R"(
   0.01 s d Em/dt = Efd - Em        e = Em/EFDRATED
-  T(e): straight through (EFD1, TIME1), (EFD2, TIME2), (EFD3, TIME3), TIME3 beyond
-  d timer/dt = 1/T(e)       while e > EFD1 and timer < 1      (at constant e it takes T(e))
+  T(e): straight lines through (EFD1, TIME1), (EFD2, TIME2), (EFD3, TIME3), TIME3 beyond
+  d timer/dt = 1/T(e)       while e > EFD1 and timer < 1      (at constant e: timed out after T(e))
              = -10/s timer  while e <= EFD1 and timer < 1     (reset with time constant 0.1 s)
              = 1/s          while 1 <= timer < 2             (timed out, permanently)
   Voel = KMX (EFDDES - e) EFDRATED within [VLOW, 0] once timed out; it fades in within 0.01 s

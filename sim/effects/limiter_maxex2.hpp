@@ -14,8 +14,8 @@ struct Model {
   static constexpr Slot slot = Slot::limiter;
   static constexpr std::string_view description = R"(
   i = Ifd/EFDRATED (M = 1) or Efd/EFDRATED (M = 0)
-  T(i): straight through (EFD1, TIME1), (EFD2, TIME2), (EFD3, TIME3), TIME3 beyond
-  d timer/dt = 1/T(i)       while i > EFD1 and timer < 1      (at constant i it takes T(i))
+  T(i): straight lines through (EFD1, TIME1), (EFD2, TIME2), (EFD3, TIME3), TIME3 beyond
+  d timer/dt = 1/T(i)       while i > EFD1 and timer < 1      (at constant i: timed out after T(i))
              = -10/s timer  while i <= EFD1 and timer < 1     (reset with time constant 0.1 s)
              = 1/s          while 1 <= timer < 2             (timed out, permanently)
   d Voel/dt = KMX (EFDDES - i) EFDRATED once timed out, VLOW <= Voel <= 0, non-windup
@@ -28,7 +28,7 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"M", "M", "code", 1.0, 0.0, 1.0, kNoNullValue, "limited quantity: 0 field voltage, 1 field current",
        literature::own("field current determines field-winding heating"), shared::kCode},
-      {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNullValue, "rated field current",
+      {"EFDRATED", "EFDRATED", "pu", 2.6, 0.5, 10.0, kNoNullValue, "rated value of the limited quantity",
        literature::own(
            "field current of a loaded machine with Xd = 1.8, in units of the air-gap line; CIM has 1.05")},
       shared::kPickup,
@@ -37,7 +37,8 @@ struct Model {
       shared::kTimeAtMiddle,
       shared::kUpper,
       shared::kTimeAtUpper,
-      {"EFDDES", "EFDDES", "-", 1.0, 0.5, 5.0, kNoNullValue, "target field current, relative to rated"},
+      {"EFDDES", "EFDDES", "-", 1.0, 0.5, 5.0, kNoNullValue,
+       "target of the limited quantity, relative to rated"},
       {"KMX", "KMX", "1/s", 0.02, 0.0, 10.0, 0.0, "gain of the integrator",
        literature::own("ten times CIM's, to act within a record")},
       shared::kLowest};

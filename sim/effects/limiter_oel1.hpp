@@ -59,8 +59,8 @@ struct Model {
       {"Vfdflag", "Vfdflag", "code", 0.0, 0.0, 1.0, kNoNullValue,
        "limited quantity: 0 field current, 1 field voltage",
        literature::own("field current determines field-winding heating"), shared::kCode},
-      {"Alarm", "Alarm", "code", 0.0, 0.0, 1.0, 1.0, "1: a message only, no action", shared::kNothing,
-       shared::kCode}};
+      {"Alarm", "Alarm", "code", 0.0, 0.0, 1.0, 1.0, "1: alarm without action on the exciter",
+       shared::kNothing, shared::kCode}};
   static constexpr int dyr_columns[] = {Ifdset, Ifdmax, Tpickup, Runback, Tmax, Tset, Ifcont, Vfdflag, Alarm};
   enum C { pickup, lasting, inverse_rate, definite_rate, ramp, bias, voltage, zero, top, coefficients };
   enum X { timer, Voel };
@@ -137,7 +137,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   values.refuse(p[Tpickup] == 0.0, Tpickup, "its sign selects inverse or definite time",
                 "give Tpickup > 0 or < 0" + order);
   for (int i : {Vfdflag, Alarm})
-    values.refuse(p[i] != 0.0 && p[i] != 1.0, i, "a code", "give 0 or 1" + order);
+    values.refuse(p[i] != 0.0 && p[i] != 1.0, i, "it is a code", "give 0 or 1" + order);
   for (int i : {Tmax, Tset})
     values.refuse(!(p[i] >= 0), i, "a time cannot be negative", "give a value >= 0" + order);
 }

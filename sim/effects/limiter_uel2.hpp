@@ -67,10 +67,10 @@ struct Model {
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kUnused = literature::derived("an unused point");
   static constexpr Parameter parameters[] = {
-      {"K1", "K1", "code", 2.0, 0.0, 2.0, kNoNullValue, "exponent of the voltage, of P", kAsEffect,
+      {"K1", "K1", "code", 2.0, 0.0, 2.0, kNoNullValue, "exponent of the voltage that divides P", kAsEffect,
        shared::kCode},
-      {"K2", "K2", "code", 2.0, 0.0, 2.0, kNoNullValue, "exponent of the voltage, of Q", kAsEffect,
-       shared::kCode},
+      {"K2", "K2", "code", 2.0, 0.0, 2.0, kNoNullValue, "exponent of the voltage that multiplies Q'",
+       kAsEffect, shared::kCode},
       {"Qquad", "Qquad", "code", 0.0, 0.0, 1.0, kNoNullValue, "P' < 0: 0 mirrored, 1 first line extended",
        literature::derived("irrelevant for a generator"), shared::kCode},
       {"TUV", "TUV", "s", 5.0, 0.0, 60.0, kNoNullValue, "lag of the voltage (0: none)"},
@@ -215,7 +215,7 @@ struct Model {
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
   const shared::ValueCheck values(name, parameters, p, where, problems);
   for (int i : {K1, K2})
-    values.refuse(p[i] != 0.0 && p[i] != 1.0 && p[i] != 2.0, i, "an exponent of the voltage",
+    values.refuse(p[i] != 0.0 && p[i] != 1.0 && p[i] != 2.0, i, "it is an exponent of the voltage",
                   "give 0, 1 or 2");
   values.refuse(p[Qquad] != 0.0 && p[Qquad] != 1.0, Qquad, "it selects the characteristic for P' < 0",
                 "give 0 or 1");

@@ -40,7 +40,7 @@ struct Model {
   static constexpr Slot slot = Slot::load;
   static constexpr std::string_view description = R"(
   V = (Ra + jX'') I + j psi''    psi'' = a1 psi1 + a2 psi2    X'' = Xa + Xm parallel to the cages' leakage
-  dpsi_k/dt = -w0 R_k i_k - j w0 s psi_k;  for the first cage i_1 + Se(|psi''|) psi''/Xm
+  dpsi_k/dt = -w0 R_k i_k - j w0 s psi_k;  for the first cage i_1 + Se(|psi''|) psi''/Xm in place of i_1
       type 1: jXm parallel to R1/s + jX1 and R2/s + jX2
       type 2: jXm parallel to jX1 + (R1/s parallel to R2/s + jX2);         R2 = X2 = 0: one cage, R1/s + jX1
   Se = B (psi - A)^2/psi through S(E1), S(E2)
@@ -101,7 +101,7 @@ struct Model {
       {"S2", "S(E2)", "-", 0.0, 0.0, 5.0, 0.0, "saturation factor at E2 (both 0: none)", kAsEffect, kSteep},
       {"Mbase", "MBASE", "MVA", 0.0, 0.0, 100000.0, kNoNullValue, "motor base (0: from PMULT)",
        literature::own("PMULT gives it"), literature::own("larger than any load")},
-      {"Pmult", "PMULT", "MVA/MW", 1.25, 0.1, 10.0, kNoNullValue, "motor base per load",
+      {"Pmult", "PMULT", "MVA/MW", 1.25, 0.1, 10.0, kNoNullValue, "motor base divided by the load's P",
        literature::cim("LoadMotor: 1/Lfac"), literature::own("loaded from a tenth to ten times")},
       {"H", "H", "s", 0.8, 0.05, 10.0, kNoNullValue, "inertia constant",
        literature::own("twice CIM's 0.4 (LoadMotor)")},
@@ -371,9 +371,9 @@ struct Model {
 inline void Model::check(const double* p, const std::string& where, Problems& problems) {
   const shared::ValueCheck values(name, parameters, p, where, problems);
   values.refuse(p[IT] != 1 && p[IT] != 2, IT, "it is the code of the circuit", "give 1 or 2");
-  values.require_positive({Xm, R1, X1, H}, "the motor divides by it");
+  values.require_positive({Xm, R1, X1, H}, "the motor's equations divide by it");
   values.refuse_negative({Ra, Xa, R2, X2, E1, S1, E2, S2, Mbase, Pmult, TI, TB, E, Tnom},
-                         "it is a magnitude");
+                         "it cannot be negative");
   values.refuse((p[R2] > 0) != (p[X2] > 0), values.text(R2, X2), "a second cage needs both",
                 "give both > 0, or both 0 for one cage");
   values.refuse(p[Mbase] == 0 && !(p[Pmult] > 0), values.text(Mbase, Pmult), "the motor has no base",
@@ -381,7 +381,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
   values.refuse(p[VI] != 0, VI, "the undervoltage relay is not modelled", "give VI = 0");
   values.refuse((p[S1] > 0 || p[S2] > 0) &&
                     (p[E1] == p[E2] || !((p[E2] - p[E1]) * (p[S2] * p[E2] - p[S1] * p[E1]) > 0)),
-                values.text(E1, S1, E2, S2), "no quadratic rises through both",
+                values.text(E1, S1, E2, S2), "no quadratic saturation curve rises through both points",
                 "give S(E) rising with E, or 0 for both");
   values.require_finite({A, B, C0, D});
 }

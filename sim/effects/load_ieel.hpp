@@ -112,14 +112,16 @@ struct Model : shared::StaticLoad<Model> {
       T sum(0.0);
       for (int k = 3 * side; k < 3 * side + 3; ++k) {
         if (value_of(p[a1 + k]) != 0.0 && value_of(v) < value_of(c[lowest + k]))
-          return fmt::format("{} = {:g} pu: the part with {} = {:g} is already an impedance there",
-                             value_of(p[n1 + k]) < 1.0 ? "Vp" : "Vi", value_of(c[lowest + k]),
-                             parameters[n1 + k].symbol, value_of(p[n1 + k]));
+          return fmt::format(
+              "the voltage is below {} = {:g} pu, where the term with {} = {:g} is an impedance",
+              value_of(p[n1 + k]) < 1.0 ? "Vp" : "Vi", value_of(c[lowest + k]), parameters[n1 + k].symbol,
+              value_of(p[n1 + k]));
         sum = sum + p[a1 + k] * to_the_power(v, p[n1 + k]);
       }
       const bool nothing = value_of(drawn[side]) == 0.0;
       if (!nothing && !(value_of(sum) > 0.0))
-        return fmt::format("the parts of {} add up to {:.4g} there", side == 0 ? "P" : "Q", value_of(sum));
+        return fmt::format("the terms of {} add up to {:.4g} at this voltage, not to a value > 0",
+                           side == 0 ? "P" : "Q", value_of(sum));
       const T rated = nothing ? T(0.0) : drawn[side] / sum;
       for (int k = 3 * side; k < 3 * side + 3; ++k) c[part + k] = rated * p[a1 + k];
     }

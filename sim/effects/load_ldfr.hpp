@@ -22,8 +22,8 @@ struct Model : shared::LoadOfParts<Model> {
   P = P0 ((1 - Pi - Pp) v^2 + Pi v f^r + Pp f^m)
   Q = Q0 ((1 - Qi - Qp) v^2 + Qi v f^s + Qp f^n)
   For a .dyr the fractions follow from the load's components in the .raw.
-  Below Vp the power part is P0 Pp times 2 x^2 (x = V/Vp up to 1/2), 1 - 2 (1 - x)^2 (up to 1), below Vi the
-  current part I0 Pi times min(1, a b u^(b-1) exp(-a u^b)), u = V/(2 Vi), a = 1.502, b = 1.769; likewise for Q.
+  Below Vp the power part is multiplied by 2 y^2 (y = V/Vp up to 1/2), 1 - 2 (1 - y)^2 (up to 1), below Vi the
+  current part by min(1, a b u^(b-1) exp(-a u^b)), u = V/(2 Vi), a = 1.502, b = 1.769; likewise for Q.
   df: frequency deviation of the bus, from its voltage and the lagged voltage x = V/(1 + s Tf),
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";

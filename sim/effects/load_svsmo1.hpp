@@ -37,8 +37,8 @@ struct Model {
   Vref - Vm - Xc1 Vt B --> [ dead-band ] --> [ Vemin to Vemax ] --> [ (1 + s Tc2)/(1 + s Tb2) ]
       --> [ Kpv + Kiv/s, Bmin to Btop ] --> [ 1/(1 + s T2) ] --> B        Q = B Vt^2
   dead-band: output 0 until |error| exceeds Vdbd1; then the error, until |error| has stayed within Vdbd2 for Tdbd
-  Btop = Bshrt; Bmax after the request has exceeded it for Tshrt, as long as it does; at most UVSBmax after V has
-      been below UV1 for UVtm1, and for PLLdelay after that
+  Btop = Bshrt; Bmax while the request has exceeded it for longer than Tshrt; at most UVSBmax while V has been
+      below UV1 for longer than UVtm1, and for PLLdelay afterwards
   The device trips (B = 0 permanently) after V has been below UVT for UVtm2, above OV1 for OVtm1
       or above OV2 for OVtm2
   Susceptances on the system's base. P of the load that it models is a conductance P/Vt^2.
@@ -106,7 +106,7 @@ struct Model {
       literature::interpss("PSSE_5Bus_svsmo1t2_synthetic.dyr, which PSS/E 36 ran");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Source kUnread = literature::derived("not used by the equations");
-  static constexpr Source kRange = literature::own("so that a load's Q lies within");
+  static constexpr Source kRange = literature::own("wide enough for the Q of a load");
   static constexpr Parameter parameters[] = {
       {"RemoteBus", "J", "code", 0.0, 0.0, 999997.0, kNoNullValue,
        "bus whose voltage it regulates (0: its own)", shared::kNothing, shared::kBusNumber},
@@ -328,7 +328,7 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     values.refuse(!(p[high] >= p[low_one]), values.text(high, low_one),
                   "the first value must not be below the second", "swap them");
   values.refuse(!(p[Vemax] >= 0.0 && p[Vemin] <= 0.0), values.text(Vemax, Vemin),
-                "an error of 0 lies between them", "give Vemax >= 0 >= Vemin");
+                "an error of 0 must lie between them", "give Vemax >= 0 >= Vemin");
 }
 
 /// Returns a remark on features that the record requests and the equations omit, or "".

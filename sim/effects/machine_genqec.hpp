@@ -220,12 +220,12 @@ inline void Model::check(const double* p, const std::string& where, Problems& pr
     values.refuse(!(p[i] >= p[Xl]), values.text(i, Xl), "only the part above Xl saturates",
                   "give a reactance >= Xl");
   values.require_times({Tqop});
-  values.refuse(p[Tqop] == 0 && p[Xqp] != p[Xq], values.text(Tqop, Xqp, Xq), "without the circuit X'q is Xq",
-                "give X'q = Xq, or T'qo > 0");
+  values.refuse(p[Tqop] == 0 && p[Xqp] != p[Xq], values.text(Tqop, Xqp, Xq),
+                "without the transient circuit X'q equals Xq", "give X'q = Xq, or T'qo > 0");
   values.refuse_negative({Kw}, "the correction grows with the current");
   for (const int i : {Rcomp, Xcomp})
     values.refuse(p[i] != 0, i, "GENQEC's own compensation is not modelled",
-                  "give 0, and an IEEEVC record with it");
+                  "give 0 and add an IEEEVC record");
   values.refuse(p[SatFunc] != 1, SatFunc,
                 "of GENQEC's saturation functions only the scaled quadratic (1) is modelled",
                 "give 1, or S1.0 = 0 with 1 for no saturation");

@@ -1,5 +1,5 @@
 #pragma once
-// GENSAE: salient-pole machine, one field and one damper circuit in each axis, exponential saturation.
+// GENSAE: salient-pole machine, one field circuit, one damper circuit in each axis, exponential saturation.
 //
 // Conventions are those of GENROU. Integrated with PSS/E's own time steps, the equations reproduce PSS/E's
 // record psse_powersimulationsdynamics/GENSAE within 0.0001 degrees over 10 s. The error is 0.0016 degrees

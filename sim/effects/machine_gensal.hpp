@@ -1,5 +1,5 @@
 #pragma once
-// GENSAL: salient-pole machine, one field and one damper circuit in each axis.
+// GENSAL: salient-pole machine, one field circuit, one damper circuit in each axis.
 //
 // Conventions are those of GENROU. Integrated with PSS/E's own time steps, the equations reproduce voltages
 // and speed of PSS/E's record psse/EXST1 (D = 4) within 0.03 % of their swing. The error is 3 % with speed

@@ -72,8 +72,8 @@ struct Model {
        literature::own("not 0, so that the current acts on the saturation; CIM has 0"),
        literature::own("half of the current as flux")},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", shared::kNeglected}};
-  /// Weight of flux errors in step control: with steep saturation the gain from a flux error to the field
-  /// current is about 10, as in GENROU.
+  /// Weight of flux errors in step size control: with steep saturation the gain from a flux error to the
+  /// field current is about 10, as in GENROU.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, Edp, psid, psiq };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
@@ -278,8 +278,8 @@ inline void Model::check_with(const shared::ValueCheck& values, const double* p)
     values.refuse(!(p[i] >= p[Xl]), values.text(i, Xl), "only the part above Xl saturates",
                   "give a reactance >= Xl");
   values.require_times({Tqop});
-  values.refuse(p[Tqop] == 0 && p[Xqp] != p[Xq], values.text(Tqop, Xqp, Xq), "without the circuit X'q is Xq",
-                "give X'q = Xq, or T'qo > 0");
+  values.refuse(p[Tqop] == 0 && p[Xqp] != p[Xq], values.text(Tqop, Xqp, Xq),
+                "without the transient circuit X'q equals Xq", "give X'q = Xq, or T'qo > 0");
   values.refuse_negative({Kis}, "current adds to saturation");
   values.refuse(!QuadraticSaturation::possible(p[S10], p[S12]), values.text(S10, S12),
                 QuadraticSaturation::impossible, QuadraticSaturation::remedy);

@@ -18,12 +18,12 @@ struct Model {
 
   T d(df')/dt = df - df'       df' = df at the first sample; df is linear between samples
   V and I are unchanged. An angle that is integrated from df' lags: its true value is
-  theta + T d(theta)/dt. A delay or a longer filter acts alike, to first order in its group delay.
+  theta + T d(theta)/dt. To first order, a delay or another filter acts like a lag with its group delay.
 )";
   enum P { lag };
   static constexpr Source defaults_from = shared::kNothing;
   static constexpr Source bounds_from =
-      literature::own("a slower frequency shows no swing; a time constant cannot be negative");
+      literature::own("a slower measurement shows no swing; a time constant cannot be negative");
   static constexpr Parameter parameters[] = {
       {"lag", "T", "s", 0.0, 0.0, 1.0, 0.0, "time constant of the frequency's low-pass filter"}};
 

@@ -19,8 +19,8 @@ struct Model {
   static constexpr std::string_view description = R"(
   valid --( rate dt )--> missing --( dt / length )--> valid          probability per sample, dt apart
 
-  A missing sample loses V, I and df together (NaN). A gap is at least one sample long; the first sample is
-  valid.
+  A missing sample loses V, I and df together (NaN). A gap is at least one sample long, and another may
+  begin within it. The first sample is valid.
 )";
   enum P { rate, length };
   static constexpr Source defaults_from = shared::kNothing;

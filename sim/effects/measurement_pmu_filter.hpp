@@ -25,7 +25,7 @@ struct Model {
   class 1 (M): w(t) = sin(x) / x (0.54 + 0.46 cos(pi t / L)),  |t| < L,  x = 4 pi Ffr t / scale
                Ffr and L = scale N / (32 f0) from the standard's table for the reports per second
   The same w for V and I. The window is integrated over a cubic through the samples, independent of their rate;
-  outside the record the phasors are constant. At 60/s without oversampling a step is as sharp as the samples.
+  outside the record the phasors are constant. A step is only as sharp as the samples resolve it.
 )";
   enum P { klass, scale, reports, compensation };
   static constexpr Source defaults_from = literature::own("class P, the default");

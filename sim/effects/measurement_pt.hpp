@@ -26,7 +26,7 @@ struct Model {
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     if (!(p[gain] > -1))
-      problems.add(fmt::format("gain = {:g} pu", p[gain]), where, "the voltage would be zero",
+      problems.add(fmt::format("gain = {:g} pu", p[gain]), where, "the voltage would be zero or reversed",
                    "give gain > -1");
   }
 

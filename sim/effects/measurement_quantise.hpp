@@ -16,8 +16,8 @@ struct Model {
   static constexpr std::string_view description = R"(
   |V|, |I|, angles of V and I, df --[ nearest multiple of the step ]-- each sample independently
 
-  A step of 0 leaves the quantity as it is. A 16-bit magnitude has full scale / 32768, an angle 1e-4 rad,
-  a frequency 0.001 Hz.
+  A step of 0 leaves the quantity unchanged. Usual steps: full scale / 32768 for a 16-bit magnitude,
+  1e-4 rad for an angle, 0.001 Hz for a frequency.
 )";
   enum P { V, I, angle, frequency };
   static constexpr Source defaults_from = shared::kNothing;

@@ -17,8 +17,8 @@ struct Model {
 
   I'(t) = I(t - skew), of the phasor in the synchronous frame: the whole channel is delayed. (A late
   sampling clock also turns the phasor by 2 pi f0 skew; that is CTERROR's phase.)
-  Between samples: a cubic, and a straight line across a step, so that only the sample inside the
-  step is filtered. Outside the record the current is constant.
+  Between samples: a cubic, and a straight line across a step, so that only a sample inside the step
+  has an intermediate value. Outside the record the current is constant.
 )";
   enum P { skew };
   static constexpr Source defaults_from = shared::kNothing;

@@ -82,8 +82,9 @@ struct Model {
     c[pord0] = s.Pord;
     const double turned = value_of(x[by_speed]);
     if (turned < value_of(c[least]) || turned > value_of(c[most]))
-      return fmt::format("the initial pitch would be {:.4g} degrees, outside {:g} to {:g}", value_of(s.pitch),
-                         value_of(c[least]), value_of(c[most]));
+      return fmt::format(
+          "an initial pitch of {:.4g} degrees needs an integral of the speed outside {:g} to {:g} degrees",
+          value_of(s.pitch), value_of(c[least]), value_of(c[most]));
     return {};
   }
 };

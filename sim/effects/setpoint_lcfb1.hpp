@@ -35,7 +35,7 @@ struct Model {
        literature::cim("TurbLCFB1"), shared::kCode},
       {"PBF", "PBF", "code", 1.0, 0.0, 1.0, kNoNullValue, "1: the power adds to the error", kAsEffect,
        shared::kCode},
-      {"FB", "Fb", "pu/pu", 0.0, 0.0, 1000.0, 0.0, "frequency bias, power by speed",
+      {"FB", "Fb", "pu/pu", 0.0, 0.0, 1000.0, 0.0, "frequency bias, power per speed",
        literature::cim("TurbLCFB1")},
       {"TPELEC", "Tpelec", "s", 1.0, 0.0, 100.0, 0.0, "lag of the measured power (0: none)"},
       {"DB", "db", "pu", 0.0, 0.0, 1.0, 0.0, "half width of the error's dead-band",

@@ -33,7 +33,8 @@ struct Model {
   Until V has fallen by `dip` nothing is changed.
 )";
   enum P { drop, dip, delay, closing, hold, opening };
-  static constexpr Source defaults_from = literature::own("a noticeable fault, and valves without delay");
+  static constexpr Source defaults_from =
+      literature::own("a noticeable fault, and a short delay of the valves");
   static constexpr Source bounds_from = shared::kAnyTime;
   static constexpr Parameter parameters[] = {
       {"drop", "k", "-", 0.3, 0.0, 1.0, 0.0, "fraction of the torque removed by the valves",

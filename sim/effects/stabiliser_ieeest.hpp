@@ -149,7 +149,7 @@ struct Model {
     const auto order = [](double first, double second) { return second != 0.0 ? 2 : first != 0.0 ? 1 : 0; };
     values.refuse(order(p[A5], p[A6]) > order(p[A1], p[A2]) + order(p[A3], p[A4]), values.text(A5, A6),
                   "the filter would differentiate: its numerator is of higher order than its denominator",
-                  "give A1 to A4 to match");
+                  "give more of A1 to A4 > 0");
     values.require_ranges({{LSMAX, LSMIN}});
   }
   /// A cut-off within the band of normal voltages would switch the stabiliser on and off continually.

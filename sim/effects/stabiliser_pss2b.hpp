@@ -144,7 +144,7 @@ struct Model {
     coefficients = slow + kRampLags
   };
   enum X { w1, w2, y1, w3, w4, y2, ramp, lead1 = ramp + kRampLags, lead2, lead3 };
-  /// Weight in step control: KS1 and the leads amplify every state by some tens, and the exciter's gain
+  /// Weight in step size control: KS1 and the leads amplify every state by some tens, and the exciter's gain
   /// multiplies the result.
   static constexpr double kGainWeight = 10.0;
   static constexpr State states[] = {

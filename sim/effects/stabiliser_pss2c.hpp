@@ -21,8 +21,8 @@ struct Model {
   As PSS2B up to the third lead-lag, then
      -> (1 + s T12)/(1 + s T13) -> [VSTMIN, VSTMAX] -> on -> Vs
   on: to 1 while P > PSSON, to 0 while P < PSSOFF, constant in between; initially 1 unless P < PSSOFF;
-     always 1 if PSSON = 0. To be integrable, it switches with a time constant of 5 ms,
-     which it reaches 1e-5 pu beyond a threshold.
+     always 1 if PSSON = 0. So that it can be integrated, it switches with a time constant of 5 ms, with a
+     transition of 1e-5 pu beyond a threshold.
   T13 = 0: no fourth lead-lag. Compensated frequency (input code 7) is not modelled; Xcomp and Tcomp belong to it.
 )";
   /// The parameters of PSS2B, then these.

@@ -18,7 +18,7 @@ struct Model {
 )";
   enum P { K2, T2, K3, T3, K4, K5, T5, HLIM };
   static constexpr Source defaults_from = literature::own(
-      "washouts of 4 s and an integral above a tenth of a second; no published sample was found");
+      "washouts of 4 s and a lag that integrates above 0.1 Hz; no published sample was found");
   static constexpr Source bounds_from = shared::kNoCases;
   static constexpr Parameter parameters[] = {
       {"K2", "K2", "pu", 1.0, 0.0, 100.0, kNoNullValue, "gain of each washout"},

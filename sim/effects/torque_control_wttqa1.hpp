@@ -17,8 +17,8 @@ struct Model {
   static constexpr Slot slot = Slot::torque_control;
   static constexpr std::string_view description = R"(
   P/(1 + s Tp) --> f(P): linear between the points (p, spd) --> [ 1/(1 + s Twref) ] --> wref
-  wg - wref (Tflag 0), (Pext - P)/(1 + wg) (Tflag 1) --> [ Kpp + Kip/s, Temin to Temax ] --> x (1 + wg) --> Pext
-  per unit of TRATE (0: the converter's base)
+  wg - wref (Tflag 0), (Pref - P)/(1 + wg) (Tflag 1) --> [ Kpp + Kip/s, Temin to Temax ] --> x (1 + wg) --> Pext
+  Pref: the plant control's Pext; per unit of TRATE (0: the converter's base)
 )";
   enum P { Tflag, Kpp, Kip, Tp, Twref, Temax, Temin, p1, spd1, p2, spd2, p3, spd3, p4, spd4, TRATE };
   static constexpr Source defaults_from = literature::andes("WTTQA1");

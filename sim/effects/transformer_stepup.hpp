@@ -33,7 +33,7 @@ struct Model {
     };
     refuse(R, !(p[R] >= 0), "a resistance cannot be negative", "give R >= 0");
     refuse(X, !(p[X] >= 0), "a leakage reactance cannot be negative", "give X >= 0");
-    refuse(ratio, !(p[ratio] > 0), "voltages of both sides have the same sign", "give a ratio near 1");
+    refuse(ratio, !(p[ratio] > 0), "the voltages of both sides have the same sign", "give a ratio near 1");
   }
 
   template <class T>

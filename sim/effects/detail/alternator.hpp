@@ -12,7 +12,7 @@ namespace swingbank::sim::effects::shared {
 template <class Model>
 struct Alternator {
   static constexpr Slot slot = Slot::exciter;
-  /// Weight in step control of the regulator's inputs, which affect Efd with a gain of hundreds.
+  /// Weight in step size control of the regulator's inputs, which affect Efd with a gain of hundreds.
   static constexpr double kErrorWeight = 10.0;
 
  protected:
@@ -51,7 +51,7 @@ struct Alternator {
     values.require_divisors({M::TE});
     values.refuse_negative({M::KC, M::SE1, M::SE2}, "it only reduces the exciter's voltage");
     values.refuse(p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2], values.text(M::E1, M::E2),
-                  "one voltage cannot have two saturation factors", "give two points");
+                  "one voltage cannot have two saturation factors", "give two different voltages");
   }
 };
 

@@ -35,7 +35,7 @@ struct AlternatorRectifier : Alternator<Model> {
          lower,
          {"TE", "TE", "s", 0.8, 0.01, 5.0, kNoNullValue, "alternator's time constant"},
          {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "gain of the rate feedback"},
-         {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)"},
+         {"TF", "TF", "s", 1.0, 0.02, 20.0, kNoNullValue, "rate feedback's time constant (0 only if KF = 0)"},
          {"KC", "KC", "pu", 0.2, 0.0, 1.0, 0.0, "rectifier's commutating reactance", kAsEffect, kRange},
          {"KD", "KD", "pu", 0.38, 0.0, 2.0, 0.0, "alternator's armature reaction"},
          {"KE", "KE", "pu", 1.0, 0.0, 2.0, kNoNullValue, "self-excitation constant"},

@@ -64,7 +64,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
     values.refuse_negative({Model::Iqrmax, Model::Re});
     values.refuse_positive({Model::Iqrmin});
     values.require_positive({Model::Tg, Model::rrpwr, Model::Imax, Model::Xe, Model::Tfreq},
-                            "the equations divide by it, or are constant without it");
+                            "the equations divide by it, or the current could not change");
   }
   template <class T>
   static void prepare_common(const T* p, const Conventions& conventions, T* c) {

@@ -35,7 +35,7 @@ struct ControlledCurrent {
     r = T(0.0);
     x = T(kReactance);
   }
-  /// Sets the internal voltage to zero; a source that is off also has zero terminal voltage.
+  /// Sets the internal voltage to zero, which is also the terminal voltage of a disconnected source.
   template <class T>
   static void emf(const T*, const T*, T*, T& er, T& ei) {
     er = ei = T(0.0);

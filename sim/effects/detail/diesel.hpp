@@ -33,13 +33,13 @@ struct Diesel {
       kT5 = {"T5", "T5",  "s",          0.01,
              0.0,  100.0, kNoNullValue, "actuator, first lag (0: neither lag nor lead)"},
       kT6 = {"T6", "T6", "s", 0.01, 0.0, 100.0, kNoNullValue, "actuator, second lag (0: none)"},
-      kTD = {"TD", "TD", "s", 0.024, 0.0, 5.0, 0.0, "delay between two firings (0: none)"},
+      kTD = {"TD", "TD", "s", 0.024, 0.0, 5.0, 0.0, "combustion delay (0: none)"},
       kTMAX =
           upper_limit({"TMAX", "TMAX", "pu", 1.1, 0.1, 10.0, kNoNullValue, "upper limit of the throttle"}),
       kTMIN =
           lower_limit({"TMIN", "TMIN", "pu", 0.0, -1.0, 1.0, kNoNullValue, "lower limit of the throttle"});
   /// Order of the delay's Pade approximation: exp(-s TD) as a ratio of polynomials of orders 3 and 4. Its
-  /// error is at most 1e-3 up to s TD = 2.5j, and it has no direct response to a step.
+  /// error is at most 1e-3 up to s TD = 2.5j, and it has no direct feedthrough.
   static constexpr int kDelayOrder = 4;
   enum C { iTb, iT1, box_lead, gain, t4, iT5, iT6, high, low, iTD, own };
   enum X { box, box_rate, integral, lead, throttle, delay, own_states = delay + kDelayOrder };
@@ -91,7 +91,7 @@ struct Diesel {
         (u - x[box]) * c[iTb] - select(second, c[iTb] / select(first, c[iT1], T(1.0)), zero) * x[box_rate];
     return select(first, x[box] + c[box_lead] * dx[box], u);
   }
-  /// Evaluates the delay exp(-s TD); TD = 0 passes the input. Controllable form, scaled by TD, of
+  /// Evaluates the delay exp(-s TD); TD = 0 passes the input. Controllable canonical form, scaled by TD, of
   /// (840 - 360 z + 60 z^2 - 4 z^3)/(840 + 480 z + 120 z^2 + 16 z^3 + z^4), z = s TD.
   template <class T>
   static T delayed(const T* c, const T* x, const T& u, T* dx) {

@@ -163,7 +163,7 @@ struct ElectricalControl {
     s.Tm = clamp(asked, larger(limits.least_p, zero - beside), active_limit(smaller(limits.most_p, beside)));
   }
   /// Initialises states and references from the commands. `regulated`: as in reactive(); `injected`: steady
-  /// ride-through current; `bias`: added to Qext if it is a voltage; `turning`: factor of Pext.
+  /// ride-through current; `bias`: added to Qext if it is a voltage; `turning`: factor of Pext (1 or 1 + wg).
   template <class T>
   static std::string steady(T* c, const T& regulated, const T& injected, const T& bias, const T& turning,
                             const Limits<T>& limits, Signals<T>& s, T* x) {

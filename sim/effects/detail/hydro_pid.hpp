@@ -16,11 +16,11 @@ T turbine_rating(const T& given, const Conventions& conventions) {
   return select(given > T(kLeastRating), given, T(conventions.mva));
 }
 
-/// Openings and powers of the points of a gate's curve: HYG3 uses all six points, WSHYGP the first five.
 inline constexpr Source kFarPoint = literature::own("99 marks a point that is never reached");
 constexpr Parameter curve_point(std::string_view name, std::string_view meaning) {
   return {name, name, "pu", 0.0, 0.0, 99.0, kNoNullValue, meaning, kAsEffect, kFarPoint};
 }
+/// Openings and powers of the points of a gate's curve: HYG3 uses all six points, WSHYGP the first five.
 inline constexpr std::array kCurvePoints = {curve_point("GV1", "first opening (all 0: no curve)"),
                                             curve_point("PGV1", "power at GV1"),
                                             curve_point("GV2", "second opening"),
@@ -72,7 +72,7 @@ struct HydroPid {
   static constexpr std::array<State, count> states = {
       State{"filtered", "pu", "filtered error", 1.0, -1, -1, {iTD}},
       State{"integral", "pu", "integral of the error", 1.0, -1, -1, {ki}},
-      State{"lagged", "pu", "error, lagged by the derivative", 1.0, -1, -1, {iTF}}};
+      State{"lagged", "pu", "error behind the derivative's lag", 1.0, -1, -1, {iTF}}};
 
   template <class T>
   static void prepare(const T& TD, const T& KP, const T& KI, const T& KD, const T& TF, T* c) {
@@ -111,7 +111,7 @@ struct HydroPid {
     values.refuse(!(KI > 0) && !(KP > 0), values.text(iki, ikp), "no gate position would be steady",
                   "give an integral or a proportional gain > 0");
     values.refuse(!(TF >= 0) || (KD > 0 && TF == 0), values.text(ikd, itf), "a derivative needs a lag",
-                  "give a washout > 0, or no derivative gain");
+                  "give a time constant > 0, or a derivative gain of 0");
   }
 };
 

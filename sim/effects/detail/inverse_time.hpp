@@ -57,7 +57,7 @@ inline constexpr Parameter kTimeAtUpper{"TIME3",   "TIME3", "s",          15.0,
                                         kAsEffect, kNoCases};
 inline constexpr Parameter kLowest =
     lower_limit({"VLOW", "VLOW", "pu", -0.1, -10.0, 0.0, kNoNullValue, "lower limit of the output",
-                 literature::own("a tenth of the voltage"), kNoCases});
+                 literature::own("a tenth of rated voltage"), kNoCases});
 
 /// Inverse-time characteristic and timer with `size` coefficients; p and c point to its first parameter and
 /// coefficient in a Model.

@@ -10,7 +10,7 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Returns the record under the name that the model's guide uses.
+/// Returns the record with another name and symbol.
 constexpr Parameter renamed(Parameter record, std::string_view name) {
   record.name = record.symbol = name;
   return record;

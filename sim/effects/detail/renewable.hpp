@@ -12,8 +12,8 @@ inline constexpr double kDipBand = 2e-3;  ///< width below Vdip and above Vup ov
 inline constexpr double kNoLimit = 1e6;   ///< limit that never acts [pu]
 
 inline constexpr Source kWecc = literature::own(
-    "sign required by the equations; wider than the values of WECC's guides and the case files, or 99 and "
-    "999 (none)");
+    "sign required by the equations; wider than the values of WECC's guides and the case files; 99 and "
+    "999: no limit");
 inline constexpr Source kFlag = literature::derived("the defined codes");
 inline constexpr Source kBus = literature::psse("bus numbers, up to 999997; 0: the unit's own terminal");
 
@@ -42,7 +42,7 @@ T voltage_dip(const T& V, const T& vdip, const T& vup) {
 }
 
 inline constexpr double kFollow = 2e-3;  ///< time constant for setting timers and tracking stored values [s]
-inline constexpr double kFading = 1e-3;  ///< time over which values stored after a dip fade [s]
+inline constexpr double kFading = 1e-3;  ///< time over which the output of a timer changes [s]
 /// Timer after a dip: its state x is set to `whole` [s] during the dip and then decreases to 0. Returns 1
 /// while x decreases, else 0.
 template <class T>

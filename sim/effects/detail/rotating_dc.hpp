@@ -36,7 +36,7 @@ struct RotatingDc {
       kKA = {"KA", "KA", "pu", 40.0, 1.0, 1000.0, kNoNullValue, "regulator gain", kOfDc2},
       kKF = {"KF", "KF", "pu", 0.03, 0.0, 1.0, 0.0, "gain of the rate feedback", kOfDc2},
       kTF = {"TF",    "TF", "s",          1.0,
-             0.02,    20.0, kNoNullValue, "rate feedback's time constant (0: with KF = 0)",
+             0.02,    20.0, kNoNullValue, "rate feedback's time constant (0 only if KF = 0)",
              kDefault},
       kSwitch = {"Switch", "Switch", "code", 0.0, 0.0, 1.0, kNoNullValue, "column of the .dyr without effect",
                  kDefault, kCode},
@@ -111,10 +111,11 @@ void RotatingDc<Model>::check_with(std::initializer_list<int> bypassed, const Va
   values.require_times(bypassed);
   values.refuse_negative({M::SE1, M::SE2}, "saturation only reduces the exciter's voltage");
   values.refuse(p[M::E1] == p[M::E2] && p[M::SE1] != p[M::SE2], values.text(M::E1, M::E2),
-                "one voltage cannot have two saturation factors", "give two points");
+                "one voltage cannot have two saturation factors", "give two different voltages");
   values.refuse(p[M::VRMAX] == 0.0 && !((p[M::SE2] + (p[M::KE] > 0.0 ? p[M::KE] : 0.0)) * p[M::E2] > 0.0),
-                "VRMAX = 0 pu with SE(E2) = 0 or E2 = 0", "VRMAX is then computed from the saturation at E2",
-                "give VRMAX, or saturation");
+                "VRMAX = 0 pu with (SE(E2) + KE) E2 <= 0",
+                "VRMAX is then (SE(E2) + KE) E2, KE only if positive",
+                "give VRMAX > 0, or SE(E2) > 0 and E2 > 0");
   values.refuse(p[M::VRMAX] != 0.0 && !(p[M::VRMAX] > p[M::VRMIN]), values.text(M::VRMAX, M::VRMIN),
                 "the range of Vr must not be empty", "give VRMAX > VRMIN");
 }

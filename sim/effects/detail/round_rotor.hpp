@@ -36,8 +36,8 @@ struct RoundRotor {
       {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, "saturation factor at 1.2 pu flux", kMildSaturation,
        kSaturation},
       {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", kNeglected}};
-  /// Weight of flux errors in step control. Above a steep saturation knee (B up to 70) the gain from a flux
-  /// error to the field current is about 10, and the resulting angle error persists.
+  /// Weight of flux errors in step size control. Above a steep saturation knee (B up to 70) the gain from a
+  /// flux error to the field current is about 10, and the resulting angle error persists.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, Edp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},
@@ -82,7 +82,8 @@ struct RoundRotor {
   static void check(const double* p, const std::string& where, Problems& problems);
   static std::string remark(const double* p) {
     std::string text;
-    if (p[Tqop] == 0.0) text = "T'qo = 0: no transient circuit in the q axis; E'd follows within 10 ms";
+    if (p[Tqop] == 0.0)
+      text = "T'qo = 0: no transient circuit in the q axis; E'd has a time constant of 10 ms";
     if (p[Xqp] < p[Xl]) text += (text.empty() ? "" : "; ") + std::string("X'q below Xl is not physical");
     return text;
   }

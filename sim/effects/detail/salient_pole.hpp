@@ -1,7 +1,7 @@
 #pragma once
-// Salient-pole machine of GENSAL and GENSAE: one field and one damper circuit in each axis. A Model defines
-// the saturation: it adds its coefficients from `circuits` on and implements prepare, electrical, derivative
-// and steady with the functions below.
+// Salient-pole machine of GENSAL and GENSAE: one field circuit, and one damper circuit in each axis. A Model
+// defines the saturation: it adds its coefficients from `circuits` on and implements prepare, electrical,
+// derivative and steady with the functions below.
 
 #include "base/constants.hpp"
 #include "sim/core/effect.hpp"
@@ -40,8 +40,8 @@ struct SalientPole {
          {"S12", "S1.2", "-", 0.4, 0.0, 10.0, 0.0, s12, kAsRound, kSaturation},
          {"Ra", "Ra", "pu", 0.0, 0.0, 0.1, 0.0, "armature resistance", kNeglected}}};
   }
-  /// Weight of flux errors in step control, as for the round-rotor machine: above a steep saturation knee the
-  /// gain from a flux error to the field current is about 10.
+  /// Weight of flux errors in step size control, as for the round-rotor machine: above a steep saturation
+  /// knee the gain from a flux error to the field current is about 10.
   static constexpr double kFluxWeight = 10.0;
   enum X { delta, speed, Eqp, psi1d, psi2q };
   static constexpr State states[] = {{"delta", "rad", "rotor angle in the synchronous frame"},

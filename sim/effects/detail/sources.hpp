@@ -14,10 +14,10 @@ inline constexpr Source kNoCases =
 inline constexpr Source kShare = literature::derived("a fraction");
 inline constexpr Source kCode = literature::derived("the defined codes");
 inline constexpr Source kNotModelled = literature::derived("0 only: nothing else is modelled");
-inline constexpr Source kDeadBand = literature::own("1.2 Hz of 60: wider than any governor's dead-band");
+inline constexpr Source kDeadBand = literature::own("1.2 Hz of 60 Hz: wider than any governor's dead-band");
 inline constexpr Source kBusNumber = literature::psse("bus numbers, up to 999997");
 inline constexpr Source kThreshold =
-    literature::own("above 0, because the load divides by it; at most rated");
+    literature::own("above 0, because the load divides by it; at most rated voltage");
 inline constexpr Source kFrequencyLag = literature::own("from half a cycle of 50 Hz to a second");
 inline constexpr Source kBeyondKundur = literature::own(
     "at least 1.7 times beyond Kundur's tables 3.2 and 4.2; above 0 where the equations divide");

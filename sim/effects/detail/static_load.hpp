@@ -61,10 +61,10 @@ struct LoadOfParts : StaticLoad<Model> {
       return (value_of(p[one]) != 0.0 || value_of(p[other]) != 0.0) && value_of(v) < value_of(p[threshold]);
     };
     if (needs(Model::Pp, Model::Qp, Model::Vp))
-      return fmt::format("Vp = {:g} pu: the constant-power part is already reduced there",
+      return fmt::format("the voltage is below Vp = {:g} pu, where the constant-power part is reduced",
                          value_of(p[Model::Vp]));
     if (needs(Model::Pi, Model::Qi, Model::Vi))
-      return fmt::format("Vi = {:g} pu: the constant-current part is already reduced there",
+      return fmt::format("the voltage is below Vi = {:g} pu, where the constant-current part is reduced",
                          value_of(p[Model::Vi]));
     return {};
   }

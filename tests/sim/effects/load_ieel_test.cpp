@@ -64,8 +64,8 @@ TEST(LoadIeel, EqualsZip_WithIntegerExponents) {
 
 TEST(LoadIeel, RefusesParametersThatCannotBeIntegrated) {
   for (const auto& [changes, part] :
-       {std::pair{Changes{{"a1", -1.0}}, "the parts of P add up to -0.96"},
-        {Changes{{"n1", 0.5}, {"Vp", 1.0}}, "Vp = 1 pu: the part with n1 = 0.5 is already an impedance"}})
+       {std::pair{Changes{{"a1", -1.0}}, "the terms of P add up to -0.96"},
+        {Changes{{"n1", 0.5}, {"Vp", 1.0}}, "below Vp = 1 pu, where the term with n1 = 0.5 is an impedance"}})
     try {
       drawn("IEEL", changes, 1.0);
       FAIL() << part;
