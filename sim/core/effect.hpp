@@ -7,7 +7,7 @@
 //   defaults_from, bounds_from    sources of defaults and bounds if a parameter's record gives none
 //   dyr_name, dyr_columns[]       PSS/E .dyr model name and column order ("" and none if it has none)
 //   check()                       refuses values at which the equations fail, such as a divisor of 0
-//   unphysical()                  optional: refuses random draws in an order that no machine has (Xd < X'd)
+//   unphysical()                  optional: refuses random draws that no machine has, such as Xd < X'd
 //   coefficients, scratch         numbers of coefficients and, of a machine, of scratch values
 //   raw_resistance, raw_reactance of a machine, optional: parameters that PSS/E keeps in the .raw
 //   variant_of                    optional: name of the effect of which it is a variant

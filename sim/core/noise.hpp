@@ -30,7 +30,7 @@ inline std::array<double, 2> normal_pair(std::uint64_t seed, std::uint32_t strea
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Derives from `seed` a seed for part number `part` of a computation, such as one instrument or plant.
+/// Returns a seed for part number `part` of a computation (an instrument, a plant), derived from `seed`.
 inline std::uint64_t seed_of(std::uint64_t seed, std::uint64_t part) {
   const auto r =
       r123::Philox4x32()({{static_cast<std::uint32_t>(part), static_cast<std::uint32_t>(part >> 32), 0, 1}},
