@@ -155,7 +155,8 @@ std::vector<int> Reader::list(const std::string& key) {
   return vertices;
 }
 
-/// Adds the states of b(s)/a(s) in observer form. Coefficients, by ascending powers of s, are divided by a_n:
+/// Adds the states of b(s)/a(s) in observer canonical form. Coefficients, by ascending powers of s, are
+/// divided by a_n:
 ///   y = z_n + b_n u,  dz_1 = b_0 u - a_0 y,  dz_i = z_(i-1) + b_(i-1) u - a_(i-1) y
 void Reader::transfer_function_states(const std::string& name, Block& block) {
   const std::string key = "blocks." + name + ".";

@@ -11,7 +11,7 @@
 
 namespace swingbank::sim::user_models {
 
-/// Returns file:line:column of a character of an expression; `offset` counts from its opening quote.
+/// Returns file:line:column of the character `offset` after the opening quote of the expression at `key`.
 std::string Reader::place(const std::string& key, std::size_t offset) const {
   auto [line, column] = config_.position(key);
   if (line == 0) return config_.where(key);
