@@ -63,7 +63,8 @@ struct Model : shared::ControlledCurrent<Model> {
        literature::psse("REGCA1")},
       lower_limit(
           {"Iolim", "Iolim", "pu", -1.3, -99.0, 0.0, kNoNullValue, "lower limit of the reactive current"}),
-      {"Tfltr", "Tfltr", "s", 0.2, 0.0, 1.0, kNoNullValue, "measurement of the voltage for LVPL (0: none)"},
+      {"Tfltr", "Tfltr", "s", 0.2, 0.0, 1.0, kNoNullValue,
+       "lag of the voltage measurement for LVPL (0: none)"},
       {"Khv", "Khv", "pu/pu", 0.0, 0.0, 100.0, 0.0, "reactive current per voltage above Volim"},
       {"Iqrmax", "Iqrmax", "pu/s", 100.0, 0.0, 9999.0, kNoNullValue, "fastest rise of the reactive current"},
       {"Iqrmin", "Iqrmin", "pu/s", -100.0, -9999.0, 0.0, kNoNullValue,

@@ -36,15 +36,15 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.01, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
        literature::own("as EXST1's; CIM has no default"), kRange},
-      {"KPR", "KPR", "pu", 10.75, 0.0, 1000.0, kNoNullValue, "voltage regulator, proportional"},
-      {"KIR", "KIR", "1/s", 10.75, 0.0, 1000.0, kNoNullValue, "voltage regulator, integral"},
+      {"KPR", "KPR", "pu", 10.75, 0.0, 1000.0, kNoNullValue, "voltage regulator, proportional gain"},
+      {"KIR", "KIR", "1/s", 10.75, 0.0, 1000.0, kNoNullValue, "voltage regulator, integral gain"},
       upper_limit(
           {"VRMAX", "VRMAX", "pu", 1.0, 0.0, 100.0, kNoNullValue, "upper limit of the voltage regulator"}),
       lower_limit(
           {"VRMIN", "VRMIN", "pu", -0.87, -100.0, 0.0, kNoNullValue, "lower limit of the voltage regulator"}),
       {"TA", "TA", "s", 0.02, 0.0, 10.0, 0.0, "lag between the regulators (0: none)"},
-      {"KPM", "KPM", "pu", 1.0, 0.0, 1000.0, kNoNullValue, "inner regulator, proportional"},
-      {"KIM", "KIM", "1/s", 0.0, 0.0, 1000.0, kNoNullValue, "inner regulator, integral"},
+      {"KPM", "KPM", "pu", 1.0, 0.0, 1000.0, kNoNullValue, "inner regulator, proportional gain"},
+      {"KIM", "KIM", "1/s", 0.0, 0.0, 1000.0, kNoNullValue, "inner regulator, integral gain"},
       upper_limit({"VMMAX", "VMMAX", "pu", 1.0, 0.0, 100.0, kNoNullValue,
                    "upper limit of the inner regulator", kCase}),
       lower_limit({"VMMIN", "VMMIN", "pu", -0.87, -100.0, 0.0, kNoNullValue,

@@ -65,7 +65,7 @@ struct Model {
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.0, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
        literature::own("none; CIM has no such parameter")},
-      {"KA", "KA", "1/s", 3.15, 0.01, 2000.0, kNoNullValue, "regulator, integral"},
+      {"KA", "KA", "1/s", 3.15, 0.01, 2000.0, kNoNullValue, "regulator, integral gain"},
       {"TA1", "TA1", "s", 1.0, 0.0, 100.0, kNoNullValue, "regulator's lead: KA TA1 is its proportional gain"},
       upper_limit({"VR1", "VR1", "pu", 1.0, 0.0, 1000.0, kNoNullValue, "upper limit of the PI"}),
       lower_limit({"VR2", "VR2", "pu", -0.87, -1000.0, 0.0, kNoNullValue, "lower limit of the PI"}),

@@ -81,8 +81,8 @@ struct Model : shared::Alternator<Model> {
   static constexpr Parameter parameters[] = {
       {"TR", "TR", "s", 0.02, 0.0, 0.5, 0.0, "voltage transducer (0: none)",
        literature::own("as ESAC6A's; CIM has no default")},
-      {"KVP", "KVP", "pu", 2800.0, 0.0, 20000.0, kNoNullValue, "voltage regulator, proportional"},
-      {"KVI", "KVI", "1/s", 0.0, 0.0, 20000.0, kNoNullValue, "voltage regulator, integral"},
+      {"KVP", "KVP", "pu", 2800.0, 0.0, 20000.0, kNoNullValue, "voltage regulator, proportional gain"},
+      {"KVI", "KVI", "1/s", 0.0, 0.0, 20000.0, kNoNullValue, "voltage regulator, integral gain"},
       upper_limit({"VIMAX", "VIMAX", "pu", 0.1, 0.001, 1000.0, kNoNullValue,
                    "limit of the voltage regulator's input"}),
       {"TA", "TA", "s", 0.01, 0.0, 10.0, kNoNullValue, "regulator time constant (0: none)"},
@@ -100,13 +100,13 @@ struct Model : shared::Alternator<Model> {
       {"FBF", "FBF", "code", 1.0, 0.0, 2.0, kNoNullValue,
        "source of the rate feedback: 0 regulator's output, 1 alternator's field current, 2 field voltage",
        kAsEffect, shared::kCode},
-      {"KIP", "KIP", "pu", 1.0, 0.0, 1000.0, kNoNullValue, "field current regulator, proportional"},
-      {"KII", "KII", "1/s", 0.0, 0.0, 1000.0, kNoNullValue, "field current regulator, integral"},
+      {"KIP", "KIP", "pu", 1.0, 0.0, 1000.0, kNoNullValue, "field current regulator, proportional gain"},
+      {"KII", "KII", "1/s", 0.0, 0.0, 1000.0, kNoNullValue, "field current regulator, integral gain"},
       {"TP", "TP", "s", 0.0, 0.0, 10.0, kNoNullValue, "bridge's time constant (0: none)"},
-      upper_limit(
-          {"VFMAX", "VFMAX", "pu", 47.0, 0.0, 1000.0, kNoNullValue, "upper limit of the alternator's field"}),
+      upper_limit({"VFMAX", "VFMAX", "pu", 47.0, 0.0, 1000.0, kNoNullValue,
+                   "upper limit of the alternator's field voltage"}),
       lower_limit({"VFMIN", "VFMIN", "pu", -20.0, -1000.0, 0.0, kNoNullValue,
-                   "lower limit of the alternator's field"}),
+                   "lower limit of the alternator's field voltage"}),
       {"KH", "KH", "pu", 0.0, 0.0, 100.0, 0.0, "feedback of the alternator's field current"},
       {"KE", "KE", "pu", 1.0, 0.0, 5.0, kNoNullValue, "self-excitation constant"},
       {"TE", "TE", "s", 1.2, 0.01, 5.0, kNoNullValue, "alternator's time constant"},
@@ -200,8 +200,8 @@ struct Model : shared::Alternator<Model> {
     values.require_time(TF, p[KF] != 0, "KF = 0");
     values.refuse(p[KF] > 0 && p[FBF] == 0.0 && p[TA] == 0.0, values.text(TA, FBF, KF),
                   "the rate feedback would form an algebraic loop", "give TA > 0");
-    values.refuse(p[FBF] != 0.0 && p[FBF] != 1.0 && p[FBF] != 2.0, FBF, "the signals are 0, 1 and 2",
-                  "give one of them");
+    values.refuse(p[FBF] != 0.0 && p[FBF] != 1.0 && p[FBF] != 2.0, FBF, "it selects one of three signals",
+                  "give 0, 1 or 2");
     values.refuse(!(p[FLIMF] >= 0 && p[FLIMF] <= 1), FLIMF,
                   "0 is for fixed limits, 1 for limits proportional to V", "give a value from 0 to 1");
     values.require_above(VRMAX, VRMIN);

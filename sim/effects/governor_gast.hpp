@@ -18,7 +18,7 @@ struct Model {
   Pref + dPref - b(w)/R --> [ min ] --> [ 1/(1 + s T1) ] --fuel--> [ 1/(1 + s T2) ] --flow--> (+) --> Pm
   AT + KT (AT - exhaust) -->        VMIN, non-windup                                         -Dturb w
   flow --> [ 1/(1 + s T3) ] --exhaust
-  b(w): 0 within +-db, beyond it the distance to the edge (GASTD; db = 0 is GAST)
+  b(w): 0 within +-db, beyond it w minus the nearer edge (GASTD; db = 0 is GAST)
   T1 dfuel/dt = min(Pref + dPref - b(w)/R, AT + KT (AT - exhaust)) - fuel      VMIN <= fuel <= VMAX
   T2 dflow/dt = fuel - flow      T3 dexhaust/dt = flow - exhaust      Pm = flow - Dturb w
 )";

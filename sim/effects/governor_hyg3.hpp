@@ -32,7 +32,7 @@ struct Model {
   static constexpr Slot slot = Slot::governor;
   static constexpr std::string_view variant_of = "HYGOV";
   static constexpr std::string_view description = R"(
-  u = ref + (Rgate + Relec) dPref - Relec P/(1 + s Tt)   b(w): 0 from dbL to dbH, beyond it the distance to the edge
+  u = ref + (Rgate + Relec) dPref - Relec P/(1 + s Tt)   b(w): 0 from dbL to dbH, beyond it w minus the nearer edge
   flag 1:  u - b(w) - Rgate CV --> [ 1/(1 + s Td) ] --> [ K2 + Ki/s + s K1/(1 + s Tf) ] --> CV
   flag 0:  b(w) --> [ 1/(1 + s Td) ] --> [ s K1/(1 + s Tf) + s^2 K2/(1 + s Tf)^2 ] --y
            u - Rgate CV - y --> [ Ki/s ] --> CV

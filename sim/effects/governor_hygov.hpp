@@ -21,7 +21,7 @@ struct Model {
                                   VELM, GMAX
   nref + R dPref - b(w) --> (+) --> [ 1/(1 + s Tf) ] --e--> [ (1 + s Tr)/(r Tr s) ] --c--> [ 1/(1 + s Tg) ] --> g
                              -R c                     -VELM, GMIN
-  b(w): 0 within +-db, beyond it the distance to the edge (HYGOVD; db = 0 is HYGOV)
+  b(w): 0 within +-db, beyond it w minus the nearer edge (HYGOVD; db = 0 is HYGOV)
   Tf de/dt = nref + R dPref - b(w) - R c - e
   r dc/dt = e/Tr + de/dt     -VELM <= dc/dt <= VELM, GMIN <= c <= GMAX, both without wind-up
   Tg dg/dt = c - g           gate opening; in h at least 0.01 (a shut gate leaks)

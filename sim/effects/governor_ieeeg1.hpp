@@ -20,7 +20,7 @@ struct Model {
   b(w) --> [ K (1 + s T2)/(1 + s T1) ] --(-)--> (+) --> [ 1/T3 ]--> [ 1/s ] --valve--> [ 1/(1 + s T4) ] --x4-->
                             Pref + dPref --(+)   -valve    UC       PMIN
   x4 --> [ 1/(1 + s T5) ] --x5--> [ 1/(1 + s T6) ] --x6--> [ 1/(1 + s T7) ] --x7
-  b(w): 0 within +-db, beyond it the distance to the edge (IEEEG1D; db = 0 is IEEEG1)
+  b(w): 0 within +-db, beyond it w minus the nearer edge (IEEEG1D; db = 0 is IEEEG1)
   dvalve/dt = (Pref + dPref - K (1 + s T2)/(1 + s T1) b(w) - valve)/T3
               UC <= dvalve/dt <= UO, PMIN <= valve <= PMAX without wind-up
   Pm = K1 x4 + K3 x5 + K5 x6 + K7 x7
@@ -54,22 +54,22 @@ struct Model {
       {"T4", "T4", "s", 0.3, 0.0, 10.0, kNoNullValue, "steam bowl time constant (0: none)"},
       {"K1", "K1", "pu", 0.3, 0.0, 1.5, 0.0, "share of power before the first reheater",
        literature::steps("IEEE39.dyr"), kStageShare},
-      {"K2", "K2", "pu", 0.0, 0.0, 0.0, 0.0, "the same for the low-pressure generator", kAsEffect,
+      {"K2", "K2", "pu", 0.0, 0.0, 0.0, 0.0, "as K1, for the low-pressure generator", kAsEffect,
        shared::kNotModelled},
       {"T5", "T5", "s", 7.0, 0.0, 60.0, kNoNullValue, "time constant of the first reheater (0: none)",
        literature::own("near the case files' 7.5 to 8.3 s")},
       {"K3", "K3", "pu", 0.4, 0.0, 1.5, 0.0, "share of power after the first reheater",
        literature::own("so that the shares sum to 1"), kStageShare},
-      {"K4", "K4", "pu", 0.0, 0.0, 0.0, 0.0, "the same for the low-pressure generator", kAsEffect,
+      {"K4", "K4", "pu", 0.0, 0.0, 0.0, 0.0, "as K3, for the low-pressure generator", kAsEffect,
        shared::kNotModelled},
       {"T6", "T6", "s", 0.5, 0.0, 60.0, kNoNullValue, "time constant of the crossover (0: none)"},
       {"K5", "K5", "pu", 0.3, 0.0, 1.5, 0.0, "share of power after the crossover",
        literature::own("so that the shares sum to 1"), kStageShare},
-      {"K6", "K6", "pu", 0.0, 0.0, 0.0, 0.0, "the same for the low-pressure generator", kAsEffect,
+      {"K6", "K6", "pu", 0.0, 0.0, 0.0, 0.0, "as K5, for the low-pressure generator", kAsEffect,
        shared::kNotModelled},
       {"T7", "T7", "s", 0.0, 0.0, 60.0, kNoNullValue, "time constant of the last stage (0: none)"},
       {"K7", "K7", "pu", 0.0, 0.0, 1.5, 0.0, "share of power after the last stage", kAsEffect, kStageShare},
-      {"K8", "K8", "pu", 0.0, 0.0, 0.0, 0.0, "the same for the low-pressure generator", kAsEffect,
+      {"K8", "K8", "pu", 0.0, 0.0, 0.0, 0.0, "as K7, for the low-pressure generator", kAsEffect,
        shared::kNotModelled},
       {"db", "db", "pu", 0.0, 0.0, 0.02, 0.0, "half width of the intentional dead-band of the speed",
        shared::kNothing, shared::kDeadBand}};

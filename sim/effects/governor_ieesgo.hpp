@@ -21,7 +21,7 @@ struct Model {
   b(w) --> [ K1/(1 + s T1) ] --> [ (1 + s T2)/(1 + s T3) ] --(-)--> [PMIN, PMAX] --> [ 1/(1 + s T4) ] --x4
                                          Pref + dPref --(+)
   x4 --> [ K2/(1 + s T5) ] --x5--> [ K3/(1 + s T6) ] --x6          Pm = (1 - K2) x4 + (1 - K3) x5 + x6
-  b(w): 0 within +-db, beyond it the distance to the edge (db = 0 is IEESGO)
+  b(w): 0 within +-db, beyond it w minus the nearer edge (db = 0 is IEESGO)
 )";
   enum P { T1, T2, T3, T4, T5, T6, K1, K2, K3, PMAX, PMIN, db };
   static constexpr Source defaults_from = literature::andes("IEESGO, commit 0cbe377");
@@ -103,7 +103,7 @@ struct Model {
     const double now = value_of(s.Tm);
     if (now > value_of(p[PMAX]) || now < value_of(p[PMIN]))
       return fmt::format(
-          "the operating point needs {:.4g} pu of power, outside PMIN to PMAX = {:g} to {:g} pu", now,
+          "the operating point needs {:.4g} pu of power, outside PMIN = {:g} pu to PMAX = {:g} pu", now,
           value_of(p[PMIN]), value_of(p[PMAX]));
     x[controller] = x[governor] = T(0.0);
     c[Pref] = x[inlet] = s.Tm;

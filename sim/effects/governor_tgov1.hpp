@@ -16,7 +16,7 @@ struct Model {
                           VMAX
   Pref + dPref - b(w)/R --> [ 1/(1 + s T1) ] --valve--> [ (1 + s T2)/(1 + s T3) ] --> (+) --> Pm
                           VMIN, non-windup                                            -Dt w
-  b(w): 0 within +-db, beyond it the distance to the edge (TGOV1D; db = 0 is TGOV1)
+  b(w): 0 within +-db, beyond it w minus the nearer edge (TGOV1D; db = 0 is TGOV1)
   T1 dvalve/dt = Pref + dPref - b(w)/R - valve        VMIN <= valve <= VMAX
   T3 dx/dt = valve - x        Pm = x + (T2/T3)(valve - x) - Dt w
 )";

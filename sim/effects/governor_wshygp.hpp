@@ -27,7 +27,7 @@ struct Model {
   static constexpr std::string_view variant_of = "HYGOV";
   static constexpr std::string_view description = R"(
   ref + R dPref - b(w) - R back --> [ 1/(1 + s TD) ] --> [ KP + KI/s + s KD/(1 + s TF) ] --> CV
-         back: CV (TT = 0), P/(1 + s TT) (TT > 0)         b(w): 0 within +-db1, beyond it the distance to the edge
+         back: CV (TT = 0), P/(1 + s TT) (TT > 0)         b(w): 0 within +-db1, beyond it w minus the nearer edge
   CV - GV --> [ KG/(1 + s TP), VELclose to VELopen ] --> [ 1/s, PMIN to PMAX ] --> gate --> [ backlash ] --> GV
   GV --> [ NGV ] --> [ (1 + s Aturb Tturb)/(1 + s Bturb Tturb) ] --> Pm
   backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms, so that it can be integrated

@@ -50,7 +50,7 @@ struct Model {
        literature::own("a few tens of seconds at a moderate overload")},
       {"Runback", "Runback", "s/pu", 100.0, -1.0, 10000.0, kNoNullValue,
        "> 0: inverse runback rate [s/pu]; < 0: step of the reference [pu]",
-       literature::own("a hundredth of the voltage each second")},
+       literature::own("a hundredth of rated voltage per second")},
       {"Tmax", "Tmax", "s", 0.0, 0.0, 1000.0, kNoNullValue, "time above Ifdmax to trip (read, not modelled)"},
       {"Tset", "Tset", "s", 0.0, 0.0, 10000.0, kNoNullValue,
        "time above Ifdset to trip (read, not modelled)"},

@@ -39,7 +39,7 @@ struct Model {
       {"KUL", "KUL", "pu", 0.5, 0.0, 1000.0, 0.0, "proportional gain",
        literature::own("CIM's 100 serves a takeover gate")},
       upper_limit({"VUIMAX", "VUIMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the integrator",
-                   literature::own("a quarter of the voltage; CIM has 18 for VULMAX")}),
+                   literature::own("a quarter of rated voltage; CIM has 18 for VULMAX")}),
       lower_limit({"VUIMIN", "VUIMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue, "lower limit of the integrator",
                    literature::derived("it only raises the voltage")}),
       {"TU1", "TU1", "s", 0.0, 0.0, 20.0, kNoNullValue, "first lead"},
@@ -47,7 +47,7 @@ struct Model {
       {"TU3", "TU3", "s", 0.0, 0.0, 20.0, kNoNullValue, "second lead"},
       {"TU4", "TU4", "s", 0.0, 0.0, 20.0, kNoNullValue, "second lag (0: bypass)"},
       upper_limit({"VULMAX", "VULMAX", "pu", 0.25, 0.0, 100.0, kNoNullValue, "upper limit of the output",
-                   literature::own("a quarter of the voltage; CIM has 18 for VULMAX")}),
+                   literature::own("a quarter of rated voltage; CIM has 18 for VULMAX")}),
       lower_limit({"VULMIN", "VULMIN", "pu", 0.0, -100.0, 0.0, kNoNullValue,
                    "lower limit of the output (only 0)", literature::derived("it only raises the voltage")})};
   static constexpr int dyr_columns[] = {KUR,    KUC, KUF, VURMAX, VUCMAX, KUI,    KUL,   VUIMAX,

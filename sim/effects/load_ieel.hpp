@@ -48,8 +48,9 @@ struct Model : shared::StaticLoad<Model> {
       {"n6", "n6", "-", 0.0, 0.0, 10.0, kNoNullValue, "exponent of the voltage in the third term of Q"},
       {"Vp", "Vp", "pu", 0.7, 0.05, 1.0, kNoNullValue, "voltage below which terms with n < 1 are impedances",
        shared::kPowerThreshold, shared::kThreshold},
-      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue, "voltage below which terms with n < 2 are impedances",
-       shared::kCurrentThreshold, shared::kThreshold},
+      {"Vi", "Vi", "pu", 0.5, 0.05, 1.0, kNoNullValue,
+       "voltage below which terms with 1 <= n < 2 are impedances", shared::kCurrentThreshold,
+       shared::kThreshold},
       {"Tf", "Tf", "s", 0.05, 0.01, 1.0, kNoNullValue, "lag of the frequency measurement",
        shared::kThreeCycles, shared::kFrequencyLag}};
   static constexpr int dyr_columns[] = {a1, a2, a3, a4, a5, a6, a7, a8, n1, n2, n3, n4, n5, n6};

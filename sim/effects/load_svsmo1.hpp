@@ -131,10 +131,10 @@ struct Model {
        kUnread},
       {"Xc3", "Xc3", "pu/pu", 0.0, 0.0, 1.0, kNoNullValue, "slope's third part (not modelled)", kAsEffect,
        kUnread},
-      {"Vup", "Vup", "pu", 1.08, 0.0, 99.0, kNoNullValue, "voltage above which the slope is Xc1", kAsEffect,
-       kUnread},
-      {"Vlow", "Vlow", "pu", 0.92, 0.0, 99.0, kNoNullValue, "voltage below which the slope is Xc3", kAsEffect,
-       kUnread},
+      {"Vup", "Vup", "pu", 1.08, 0.0, 99.0, kNoNullValue,
+       "voltage above which the slope is Xc1 (not modelled)", kAsEffect, kUnread},
+      {"Vlow", "Vlow", "pu", 0.92, 0.0, 99.0, kNoNullValue,
+       "voltage below which the slope is Xc3 (not modelled)", kAsEffect, kUnread},
       {"Tc1", "Tc1", "s", 0.0, 0.0, 10.0, 0.0, "lead of the measurement"},
       {"Tb1", "Tb1", "s", 0.012, 0.0, 10.0, kNoNullValue, "lag of the measurement (0: none)"},
       {"Tc2", "Tc2", "s", 0.0, 0.0, 10.0, 0.0, "lead of the transient gain reduction"},
@@ -178,8 +178,8 @@ struct Model {
        kAsEffect, kUnread},
       {"Tdelay2", "Tdelay2", "s", 2.8, 0.0, 999.0, kNoNullValue, "delay beyond the small threshold",
        kAsEffect, kUnread},
-      {"Tout", "Tout", "s", 280.0, 0.0, 9999.0, kNoNullValue, "discharge of a switched capacitor", kAsEffect,
-       kUnread},
+      {"Tout", "Tout", "s", 280.0, 0.0, 9999.0, kNoNullValue, "discharge time of a switched capacitor",
+       kAsEffect, kUnread},
       lower_limit({"Vrefmin", "Vrefmin", "pu", 0.8, 0.0, 99.0, kNoNullValue,
                    "lowest reference of the slow regulator", kAsEffect, kUnread}),
       upper_limit({"Vrefmax", "Vrefmax", "pu", 1.2, 0.0, 99.0, kNoNullValue,
@@ -302,11 +302,11 @@ std::string Model::steady(const T* p, T* c, Signals<T>& s, T* x) {
   const double b = value_of(x[B]), v = value_of(V);
   if (b < value_of(p[Bmin]) || b > value_of(p[Bmax]))
     return fmt::format(
-        "its susceptance at the operating point, B = {:.4f} pu, is outside Bmin to Bmax, {:g} to {:g} pu", b,
-        value_of(p[Bmin]), value_of(p[Bmax]));
+        "its susceptance at the operating point, B = {:.4f} pu, is outside Bmin = {:g} pu to Bmax = {:g} pu",
+        b, value_of(p[Bmin]), value_of(p[Bmax]));
   if (v < std::max(value_of(p[UV1]), value_of(p[UVT])) || v > std::min(value_of(p[OV1]), value_of(p[OV2])))
     return fmt::format(
-        "its protection acts at V = {:.4f} pu: UV1, UVT, OV1, OV2 are {:g}, {:g}, {:g}, {:g} pu", v,
+        "its protection acts at V = {:.4f} pu: UV1 = {:g}, UVT = {:g}, OV1 = {:g}, OV2 = {:g} pu", v,
         value_of(p[UV1]), value_of(p[UVT]), value_of(p[OV1]), value_of(p[OV2]));
   x[Vm] = V;
   c[Vref] = V + p[Xc1] * magnitude(s.Vr, s.Vi) * x[B];

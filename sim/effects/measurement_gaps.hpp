@@ -32,7 +32,7 @@ struct Model {
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     if (!(p[rate] >= 0))
-      problems.add(fmt::format("rate = {:g} 1/s", p[rate]), where, "a frequency of gaps cannot be negative",
+      problems.add(fmt::format("rate = {:g} 1/s", p[rate]), where, "a rate cannot be negative",
                    "give 0 or more");
     if (!(p[length] > 0))
       problems.add(fmt::format("length = {:g} s", p[length]), where, "a gap needs a length",

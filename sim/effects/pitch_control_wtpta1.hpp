@@ -39,8 +39,8 @@ struct Model {
   enum C { kiw, kpw, kic, kpc, kcc, iTpi, most, least, rise, fall, pord0, start, coefficients };
   enum X { by_speed, by_power, angle };
   static constexpr State states[] = {
-      {.name = "by_speed", .unit = "deg", .meaning = "integral of the speed", .bends = true},
-      {.name = "by_power", .unit = "deg", .meaning = "integral of the power", .bends = true},
+      {.name = "by_speed", .unit = "deg", .meaning = "integral of the speed control", .bends = true},
+      {.name = "by_power", .unit = "deg", .meaning = "integral of the power control", .bends = true},
       {"angle", "deg", "angle of the blades", 1.0, least, most}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
@@ -83,7 +83,8 @@ struct Model {
     const double turned = value_of(x[by_speed]);
     if (turned < value_of(c[least]) || turned > value_of(c[most]))
       return fmt::format(
-          "an initial pitch of {:.4g} degrees needs an integral of the speed outside {:g} to {:g} degrees",
+          "an initial pitch of {:.4g} degrees needs an integral of the speed control "
+          "outside TetaMin = {:g} to TetaMax = {:g} degrees",
           value_of(s.pitch), value_of(c[least]), value_of(c[most]));
     return {};
   }

@@ -99,9 +99,9 @@ struct Model {
       {"Kig", "Kig", "1/s", 0.05, 0.0, 100.0, 0.0, "regulator of P, integral gain"},
       {"Tp", "Tp", "s", 0.25, 0.0, 10.0, kNoNullValue, "lag of the measurement of P (0: none)"},
       {"fdbd1", "fdbd1", "pu", -0.0006, -1.0, 0.0, 0.0, "lower edge of the frequency's dead-band",
-       literature::own("0.036 Hz of 60, NERC's guideline on primary frequency control")},
+       literature::own("0.036 Hz of 60 Hz, NERC's guideline on primary frequency control")},
       {"fdbd2", "fdbd2", "pu", 0.0006, 0.0, 1.0, 0.0, "upper edge of the frequency's dead-band",
-       literature::own("0.036 Hz of 60, NERC's guideline on primary frequency control")},
+       literature::own("0.036 Hz of 60 Hz, NERC's guideline on primary frequency control")},
       upper_limit({"femax", "femax", "pu", 99.0, 0.0, 999.0, kNoNullValue, "upper limit of the error of P"}),
       lower_limit(
           {"femin", "femin", "pu", -99.0, -999.0, 0.0, kNoNullValue, "lower limit of the error of P"}),
@@ -154,10 +154,10 @@ struct Model {
   enum X { measured, integral, lead, power, p_integral, p_lag };
   static constexpr State states[] = {
       {"measured", "pu", "measured voltage or reactive power"},
-      {.name = "integral", .unit = "pu", .meaning = "integral of V or Q", .bends = true},
+      {.name = "integral", .unit = "pu", .meaning = "integral of the regulator of V or Q", .bends = true},
       {"lead", "pu", "lag of Qext"},
       {"power", "pu", "measured active power"},
-      {.name = "p_integral", .unit = "pu", .meaning = "integral of P", .bends = true},
+      {.name = "p_integral", .unit = "pu", .meaning = "integral of the regulator of P", .bends = true},
       {"p_lag", "pu", "lag of Pext"}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {

@@ -59,7 +59,7 @@ struct Model {
       {"VCU", "VCU", "pu", 1.25, 0.0, 10.0, 0.0, "no output above this voltage (0: off)",
        literature::sienna("IEEEST, largest value")},
       {"VCL", "VCL", "pu", 0.7, -10.0, 1.0, 0.0, "no output below this voltage (0: off)"},
-      {"Tf", "Tf", "s", 0.04, 0.005, 1.0, kNoNullValue, "lag of the frequency or slope measurement",
+      {"Tf", "Tf", "s", 0.04, 0.005, 1.0, kNoNullValue, "lag of the frequency or derivative measurement",
        literature::own("two and a half cycles of 60 Hz"),
        literature::own("from a quarter of a cycle of 50 Hz to a second")}};
   static constexpr int dyr_columns[] = {ICS, IB, A1, A2, A3, A4,    A5,    A6,  T1, T2,
@@ -136,7 +136,7 @@ struct Model {
     const shared::ValueCheck values(name, parameters, p, where, problems);
     values.refuse(!(p[ICS] >= 1.0 && p[ICS] <= 6.0 && p[ICS] == std::floor(p[ICS])), ICS,
                   "IEEEST reads speed (1), frequency (2), electrical power (3), "
-                  "accelerating power (4), voltage (5) or its slope (6)",
+                  "accelerating power (4), voltage (5) or its derivative (6)",
                   "give a whole number from 1 to 6");
     values.require_time(Tf, p[KS] != 0 && (p[ICS] == 2.0 || p[ICS] == 6.0),
                         "ICS other than 2 and 6 or KS = 0");

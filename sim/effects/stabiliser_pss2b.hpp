@@ -176,7 +176,7 @@ struct Model {
       values.refuse(
           p[i] != 1.0 && p[i] != 3.0 && p[i] != 4.0 && p[i] != 5.0, i,
           fmt::format("{} reads speed (1), electrical power (3), accelerating power (4) or voltage (5); bus "
-                      "frequency (2) and voltage slope (6) are not modelled",
+                      "frequency (2) and voltage derivative (6) are not modelled",
                       who),
           fmt::format("give {} = 1, 3, 4 or 5", parameters[i].symbol));
     for (int i : {REM1, REM2})  // p[i - 1]: input code; the bus concerns the voltage only

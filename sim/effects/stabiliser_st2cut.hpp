@@ -113,7 +113,7 @@ struct Model {
       values.refuse(
           p[i] != 0.0 && p[i] != 1.0 && p[i] != 3.0 && p[i] != 4.0 && p[i] != 5.0, i,
           "ST2CUT reads nothing (0), speed (1), electrical (3) or accelerating power (4) or voltage "
-          "(5); bus frequency (2) and voltage slope (6) are not modelled",
+          "(5); bus frequency (2) and voltage derivative (6) are not modelled",
           fmt::format("give {} = 0, 1, 3, 4 or 5", parameters[i].symbol));
     values.require_time(T4, p[T3] != 0 && (p[K1] != 0 || p[K2] != 0), "T3 = 0 or K1 = K2 = 0");
     values.require_times({T1, T2, T3, T6, T8, T10});

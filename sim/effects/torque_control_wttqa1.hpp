@@ -63,7 +63,7 @@ struct Model {
   static constexpr State states[] = {
       {"power", "pu", "measured power"},
       {"speed", "pu", "speed reference"},
-      {.name = "torque", .unit = "pu", .meaning = "integral of the torque", .bends = true}};
+      {.name = "torque", .unit = "pu", .meaning = "integral of the torque regulator", .bends = true}};
 
   static void check(const double* p, const std::string& where, Problems& problems) {
     const shared::ValueCheck values(name, parameters, p, where, problems);
@@ -109,8 +109,9 @@ struct Model {
     x[torque] = s.Pneed * c[base] / x[speed];
     c[pref] = s.Pneed = s.P;
     if (value_of(x[torque]) < value_of(c[least]) || value_of(x[torque]) > value_of(c[most]))
-      return fmt::format("the operating point needs a torque of {:.4f} pu, outside {:g} to {:g} pu",
-                         value_of(x[torque]), value_of(c[least]), value_of(c[most]));
+      return fmt::format(
+          "the operating point needs a torque of {:.4f} pu, outside Temin = {:g} pu to Temax = {:g} pu",
+          value_of(x[torque]), value_of(c[least]), value_of(c[most]));
     return {};
   }
 };

@@ -13,7 +13,7 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// A Model must have the parameters below, with the names of their records, and Te and Tfreq. It must also
+/// A Model must enumerate the parameters below by the names of their records, and Te and Tfreq. It must also
 /// have the coefficients that prepare_common() fills, and the states Ip, Iq, Vf, Vrlag and Vilag.
 template <class Model>
 struct BehindImpedance : ControlledCurrent<Model> {
@@ -31,7 +31,7 @@ struct BehindImpedance : ControlledCurrent<Model> {
                                  1e-3, 0.5,  kNoNullValue, "time constant of the converter"};
   static constexpr Parameter kTfltr{
       "Tfltr", "Tfltr", "s",          0.2,
-      0.0,     1.0,     kNoNullValue, "measurement of the voltage for rateFlag 1 (0: none)"};
+      0.0,     1.0,     kNoNullValue, "lag of the voltage measurement for rateFlag 1 (0: none)"};
   static constexpr Parameter kIqrmax{
       "Iqrmax", "Iqrmax", "pu/s", 100.0, 0.0, 9999.0, kNoNullValue, "fastest rise of the reactive current"};
   static constexpr Parameter kIqrmin{

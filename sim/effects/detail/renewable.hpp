@@ -17,8 +17,8 @@ inline constexpr Source kWecc = literature::own(
 inline constexpr Source kFlag = literature::derived("the defined codes");
 inline constexpr Source kBus = literature::psse("bus numbers, up to 999997; 0: the unit's own terminal");
 
-/// Returns the distance of u from the nearer edge of a dead-band, and 0 between the edges. An edge of the
-/// wrong sign counts as 0.
+/// Returns the signed distance of u from the nearer edge of a dead-band, and 0 between the edges. An edge of
+/// the wrong sign counts as 0.
 template <class T>
 T dead_zone(const T& u, const T& below, const T& above) {
   return positive_part(u - positive_part(above)) - positive_part(T(0.0) - positive_part(T(0.0) - below) - u);

@@ -55,8 +55,8 @@ struct UnderExcitation {
                   fmt::format("the exciter's rate feedback is not available to {}", M::name), "give KUF = 0");
     values.refuse(
         p[M::VULMIN] != 0.0, M::VULMIN,
-        fmt::format("{} adds to the voltage error and must be zero within its characteristic; a takeover "
-                    "gate is not modelled",
+        fmt::format("the output of {} is added to the voltage error and must be 0 within the characteristic; "
+                    "a takeover gate is not modelled",
                     M::name),
         "give VULMIN = 0");
     values.refuse_negative({M::KUI, M::KUL}, "the limiter would act in the wrong direction");

@@ -48,7 +48,7 @@ class ValueCheck {
   void refuse(bool wrong, const std::string& what, std::string_view why, std::string_view remedy) const {
     if (wrong) problems_.add(what, where_, std::string(why), std::string(remedy));
   }
-  /// Adds a problem with a value if `wrong`.
+  /// Adds a problem with parameter i and its value if `wrong`.
   void refuse(bool wrong, int i, std::string_view why, std::string_view remedy) const {
     refuse(wrong, text(i), why, remedy);
   }
