@@ -356,8 +356,9 @@ struct Effect {
   double (*angle_lag)(const double* p) = nullptr;
   OpsFor<Scalars>::type ops;                         ///< equations for every scalar type
   std::shared_ptr<const void> user_model = nullptr;  ///< data of a user-defined model
-  /// Returns estimates of all parameters by linear least squares from a record without noise, best first.
-  /// Parameters that the record does not determine are taken from `known`. nullptr: no such method is known.
+  /// Returns estimates of all parameters by linear least squares from a record without noise, best first;
+  /// none if the record is insufficient. Parameters that the record does not determine are taken from
+  /// `known`. nullptr: no such method is known.
   std::vector<std::vector<double>> (*closed_form)(const Recording& record, const double* known) = nullptr;
 
   /// Returns the equations for the scalar type T.
