@@ -38,8 +38,9 @@ struct Model : shared::ControlledCurrent<Model> {
   Ipcmd >= 0 (genFlag 1); down to minus its upper limit (genFlag 0: a battery)
   Ipcmd, Iqcmd x M --> [ 1/(1 + s Tg) ] --> Ip, Iq        Ip rises by rrpwr at most
   M = Mv Mf behind 1/(1 + s Tv)
-  Mv (vtripFlag 1): 1 above Vl1, 0 below Vl0, linear between. After tvl1 below Vl1: of the units tripped at
-      the lowest Vf the fraction Vrfrac reconnects. After tvl0 below Vl0: none. Vh1, Vh0, tvh1, tvh0 likewise.
+  Mv (vtripFlag 1): 1 above Vl1, 0 below Vl0, linear between. After tvl1 below Vl1, only the fraction
+      Vrfrac of the units tripped at the lowest Vf reconnects; after tvl0 below Vl0, none does. Vh1, Vh0, tvh1,
+      tvh0 likewise.
   Mf (ftripFlag 1): 0 permanently after f was below fl for tfl or above fh for tfh while V > Vpr
 
   I = (Ip - j Iq) V/|V|, below |V| = 0.01 pu in proportion to |V|

@@ -21,7 +21,7 @@ struct Model : shared::ControlledCurrent<Model> {
       LVPL: 0 below Zerox, Lvpl1 above Brkpt, linear between, of V/(1 + s Tfltr)        (Lvplsw = 1)
       G(V): 0 below Lvpnt0, 1 above Lvpnt1, linear between
   Iqcmd --> [ 1/(1 + s Tg), rise <= Iqrmax if Q0 > 0, fall >= Iqrmin if Q0 < 0 ] --Iq-->
-      Iq - Khv max(V - Volim, 0) >= Iolim --> reactive current, positive while it delivers Q
+      Iq - Khv max(V - Volim, 0) >= Iolim --> reactive current, positive while it delivers Q        (Q0: initial Q)
 
   I = (active - j reactive) V/|V|, below |V| = 0.01 pu in proportion to |V|
   speed: frequency of the terminal voltage, measured with the lag Tfreq

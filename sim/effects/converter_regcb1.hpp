@@ -21,7 +21,7 @@ struct Model : shared::BehindImpedance<Model> {
   Ipcmd, Iqcmd within Imax; reduced first: Ipcmd (pqFlag 0), Iqcmd (pqFlag 1)
   Ipcmd --> [ 1/(1 + s Tg), rise <= rrpwr ] --> Ip (rateFlag 0)
   Ipcmd Vf --> [ 1/(1 + s Tg), rise <= rrpwr ] --> /Vf --> Ip (rateFlag 1)          Vf = V/(1 + s Tfltr)
-  Iqcmd --> [ 1/(1 + s Tg), rise <= Iqrmax if Q0 > 0, fall >= Iqrmin if Q0 < 0 ] --> Iq
+  Iqcmd --> [ 1/(1 + s Tg), rise <= Iqrmax if Q0 > 0, fall >= Iqrmin if Q0 < 0 ] --> Iq        Q0: initial Q
   V + Re Ip + Xe Iq --> [ 1/(1 + s Te) ] --> Ed          Xe Ip - Re Iq --> [ 1/(1 + s Te) ] --> Eq
   I = ((Ed - V) + j Eq) V/|V|/(Re + j Xe), within Imax as the commands are; below |V| = 0.01 pu in proportion to |V|
       The limit of the current without priority is at least 0.025 Imax, so that it stays differentiable where the

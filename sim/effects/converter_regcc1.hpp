@@ -28,7 +28,7 @@ struct Model : shared::BehindImpedance<Model> {
   Ipcmd, Iqcmd within Imax; reduced first: Ipcmd (pqFlag 0), Iqcmd (pqFlag 1)
   Ipcmd --> [ 1/(1 + s Tg), rise <= rrpwr ] --> Ip (rateFlag 0)
   Ipcmd Vf --> [ 1/(1 + s Tg), rise <= rrpwr ] --> /Vf --> Ip (rateFlag 1)          Vf = V/(1 + s Tfltr)
-  Iqcmd --> [ 1/(1 + s Tg), rise <= Iqrmax if Q0 > 0, fall >= Iqrmin if Q0 < 0 ] --> Iq
+  Iqcmd --> [ 1/(1 + s Tg), rise <= Iqrmax if Q0 > 0, fall >= Iqrmin if Q0 < 0 ] --> Iq        Q0: initial Q
   Current control (GridPACK; within Imax: Dynawo; priority: as in REGCB1)
       Ip - Id --> [ Kip + Kii/s ] --> up          Iq - Iout --> [ Kip + Kii/s ] --> uq
       Vd + Re up + Xe uq --> [ 1/(1 + s Te) ] --> Ed          Vq + Xe up - Re uq --> [ 1/(1 + s Te) ] --> Eq

@@ -32,7 +32,7 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
   Pext (x (1 + wg) if PFLAG = 1) --> [ 1/(1 + s Tpord), rate dPmin to dPmax, PMIN to PMAX ] --Pord--> /Vf --> Ipcmd
   Iqcmd within VDL1(Vf), Ipcmd within VDL2(Vf): linear between the points (Vq, Iq) and (Vp, Ip), up to the last
       rising voltage; all 0: no limit. Ipcmd's limit is kept for Thld2 after a dip.
-  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
+  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1); Iqmin, Iqmax: limits of Iqcmd
   Vref0 = 0: the voltage at the operating point. The regulated terminal is the unit's own.
 )";
   enum P {

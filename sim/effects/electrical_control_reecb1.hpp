@@ -24,7 +24,7 @@ struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::
   Qin/Vf --> [ 1/(1 + s Tiq) ] --> Iq (QFLAG 0)
   Vref0 - Vf --> [ dbd1, dbd2 ] --> x Kqv within Iql1, Iqh1 --> Iqv          Iqcmd = Iq + Iqv
   Pext --> [ 1/(1 + s Tpord), rate dPmin to dPmax, Pmin to Pmax ] --Pord--> /Vf --> Ipcmd
-  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
+  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1); Iqmin, Iqmax: limits of Iqcmd
   Vref0 = 0: the voltage at the operating point. The regulated terminal is the unit's own.
 )";
   enum P { RemoteBus, PFFLAG, VFLAG, QFLAG, PQFLAG };

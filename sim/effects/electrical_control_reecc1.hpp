@@ -22,7 +22,7 @@ struct Model : renewable::RideThrough<5>, renewable::Regulators<14>, renewable::
   Qin/Vf --> [ 1/(1 + s Tiq) ] --> Iq (QFLAG 0)
   Vref0 - Vf --> [ dbd1, dbd2 ] --> x Kqv within Iql1, Iqh1 --> Iqv          Iqcmd = Iq + Iqv
   Pext --> [ 1/(1 + s Tpord), rate dPmin to dPmax, Pmin to Pmax ] --Pord--> /Vf --> Ipcmd
-  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
+  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1); Iqmin, Iqmax: limits of Iqcmd
   Iqcmd within VDL1(Vf), Ipcmd within +-VDL2(Vf): linear between the points (Vq, Iq) and (Vp, Ip), up to the last
       rising voltage; all 0: no limit
   The state of charge is constant: a battery at SOCmin does not deliver, one at SOCmax does not draw.

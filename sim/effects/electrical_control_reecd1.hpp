@@ -36,7 +36,7 @@ struct Model : renewable::RideThrough<6>, renewable::Regulators<18>, renewable::
       for Thld2 after a dip Ipcmd and its limit keep their values at the dip's end
   Iqcmd within VDL1(Vf), Ipcmd within VDL2(Vf): linear between the points (Vq, Iq) and (Vp, Ip), up to the last
       rising voltage; all 0: no limit. Ipcmd >= -Ke times its upper limit.
-  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1)
+  |Ipcmd + j Iqcmd| <= Imax; reduced first: Ipcmd (PQFLAG 0), Iqcmd (PQFLAG 1); Iqmin, Iqmax: limits of Iqcmd
   Both currents are blocked while Vf < Vblkl or Vf > Vblkh, and for Tblk afterwards.
   Vref0 = 0: the voltage at the operating point. The regulated terminal is the unit's own.
 )";

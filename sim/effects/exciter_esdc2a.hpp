@@ -21,8 +21,8 @@ struct Model {
          Vr: [V VRMIN, V VRMAX]; its lag returns to a limit with a time constant of 2 ms, which prevents windup
   TE dEfd/dt = Vr - KE Efd - Efd Se(Efd), Efd >= 0         Vf = s KF/(1 + s TF) Efd
   Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2)
-  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE only if positive), VRMIN = -VRMAX
-  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
+  VRMAX = 0 stands for VRMAX = (SE2 + KE) E2 (KE only if positive) and VRMIN = -VRMAX
+  KE = 0 stands for KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
 )";
   static constexpr std::span<const Parameter> parameters{B::parameters};
   static constexpr std::span<const int> dyr_columns{B::dyr_columns};

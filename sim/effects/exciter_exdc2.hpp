@@ -21,8 +21,8 @@ struct Model : shared::DcBehindLeadLag<Model> {
          Vr: [V VRMIN, V VRMAX]; its lag returns to a limit with a time constant of 2 ms, which prevents windup
   TE dEfd/dt = Vr - KE Efd - Efd Se(Efd)         Vf = s KF/(1 + s TF) Efd
   Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2)
-  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE only if positive), VRMIN = -VRMAX
-  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
+  VRMAX = 0 stands for VRMAX = (SE2 + KE) E2 (KE only if positive) and VRMIN = -VRMAX
+  KE = 0 stands for KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
 )";
   static constexpr bool ends_at_zero = false;
   static constexpr Source defaults_from = literature::andes("EXDC2, commit 29076bd");

@@ -18,8 +18,8 @@ struct Model : shared::DcTypeOne<Model> {
          Vr: [VRMIN, VRMAX], non-windup
   TE dEfd/dt = Vr - KE Efd - Efd Se(Efd)         Vf = s KF/(1 + s TF) Efd
   Efd Se(Efd) = B (Efd - A)^2 above A through (E1, SE1), (E2, SE2); GridPACK uses an exponential instead
-  VRMAX = 0: VRMAX = (SE2 + KE) E2 (KE only if positive), VRMIN = -VRMAX
-  KE = 0: KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
+  VRMAX = 0 stands for VRMAX = (SE2 + KE) E2 (KE only if positive) and VRMIN = -VRMAX
+  KE = 0 stands for KE = VRMAX/(10 Efd) - Se(Efd) at the operating point, so that Vr is a tenth of VRMAX
   A record of EXDC1 in a .dyr has the same columns and is read as this model.
 )";
   static constexpr bool ends_at_zero = false;

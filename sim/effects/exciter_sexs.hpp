@@ -10,8 +10,8 @@ struct Model : shared::SimplifiedExciter<Model> {
                                     source = "PSS/E SEXS; ENTSO-E, Controller test requirements (2013), SEXS",
                                     dyr_name = "SEXS";
   static constexpr std::string_view description = R"(
-  Vref + dVref - Vc + Vs + Vlimiter --> [ (1 + s TA)/(1 + s TB) ] --> [ K/(1 + s TE) ] --> Efd
-                                                                      EMIN <= Efd <= EMAX, non-windup
+  Vref + dVref - Vc + Vs + Vlimiter --u--> [ (1 + s TA)/(1 + s TB) ] --y--> [ K/(1 + s TE) ] --> Efd
+                                                                            EMIN <= Efd <= EMAX, non-windup
   TB dx1/dt = u - x1            y = x1 + (TA/TB)(u - x1)
   TE dEfd/dt = K y - Efd        TE = 0: Efd = K y
 )";

@@ -24,7 +24,7 @@ struct Model {
   b(w): 0 within +-db, beyond it w minus the nearer edge (HYGOVD; db = 0 is HYGOV)
   Tf de/dt = nref + R dPref - b(w) - R c - e
   r dc/dt = e/Tr + de/dt     -VELM <= dc/dt <= VELM, GMIN <= c <= GMAX, both without wind-up
-  Tg dg/dt = c - g           gate opening; in h at least 0.01 (a shut gate leaks)
+  Tg dg/dt = c - g           g: gate opening, in h at least 0.01 (a shut gate leaks)
   TW dq/dt = 1 - h           h = (q/g)^2
   Pm = At h (q - qNL) - Dturb w g
 )";

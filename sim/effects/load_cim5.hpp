@@ -43,7 +43,7 @@ struct Model {
   dpsi_k/dt = -w0 R_k i_k - j w0 s psi_k;  for the first cage i_1 + Se(|psi''|) psi''/Xm in place of i_1
       type 1: jXm parallel to R1/s + jX1 and R2/s + jX2
       type 2: jXm parallel to jX1 + (R1/s parallel to R2/s + jX2);         R2 = X2 = 0: one cage, R1/s + jX1
-  Se = B (psi - A)^2/psi through S(E1), S(E2)
+  Se = b (psi - psi0)^2/psi above psi0, through S(E1), S(E2)
   2H ds/dt = TL - Te    Te = Re(j psi'' conj I)    TL = T0 (A w^2 + B w + C0 + D w^E), w = 1 - s >= 0
   The slip and T0 are those at which the motor draws the load's P; a shunt draws the remaining Q.
   Motor base: Mbase, or Pmult times the load's MW if Mbase = 0. CIM5BL has D = 1 and no A, B, C0; its

@@ -24,7 +24,7 @@ struct Model : shared::LoadOfParts<Model> {
   For a .dyr the fractions follow from the load's components in the .raw.
   Below Vp the power part is multiplied by 2 y^2 (y = V/Vp up to 1/2), 1 - 2 (1 - y)^2 (up to 1), below Vi the
   current part by min(1, a b u^(b-1) exp(-a u^b)), u = V/(2 Vi), a = 1.502, b = 1.769; likewise for Q.
-  df: frequency deviation of the bus, from its voltage and the lagged voltage x = V/(1 + s Tf),
+  df: frequency deviation of the bus, from its voltage and the voltage x behind a lag of Tf,
       df = Im(V conj x) / (|V| |x|) / (2 pi f0 Tf)
 )";
   enum P { m, n, r, s, Pi, Pp, Qi, Qp, Vp, Vi, Tf };

@@ -41,7 +41,7 @@ struct Model {
       below UV1 for longer than UVtm1, and for PLLdelay afterwards
   The device trips (B = 0 permanently) after V has been below UVT for UVtm2, above OV1 for OVtm1
       or above OV2 for OVtm2
-  Susceptances on the system's base. P of the load that it models is a conductance P/Vt^2.
+  Susceptances on the system's base. P is that of a conductance, P/Vt^2 at the operating point.
   Not modelled, with a remark if a record requests it: switching of mechanically switched shunts (Flag1); a slope in
   three parts (Flag2), which is Xc1 everywhere; the slow susceptance regulator (Kps, Kis); the immediate action
   below UV2, on which the sources are silent or disagree.

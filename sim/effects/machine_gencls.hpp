@@ -20,7 +20,7 @@ struct Model {
                                     source = "Kundur (1994), 12.3.1; PSS/E GENCLS", dyr_name = "GENCLS";
   static constexpr Slot slot = Slot::machine;
   static constexpr std::string_view description = R"(
-   2H dw/dt = Tm - D w - Te          (Conventions::mechanical_power: (Pm - D w - Pe)/(1 + w))
+   2H dw/dt = Tm - D w - Te          (PSS/E's convention: (Pm - D w - Pe)/(1 + w))
    d delta/dt = 2 pi f0 w            Te, Pe = Re(E conj(I))
   H = 0 is PSS/E's infinite bus: angle and speed are constant.
 )";

@@ -26,14 +26,14 @@ struct Model {
    Se = B (u - A)^2/u above A, with Se(1.0) = S1.0 and Se(1.2) = S1.2 (SatFunc 1: scaled quadratic);  S1.0 = 0: none
    psi''d =  E'q (X''d - Xl)/(X'd - Xl) + psi1d (X'd - X''d)/(X'd - Xl)
    psi''q = -E'd (X''q - Xl)/(X'q - Xl) + psi2q (X'q - X''q)/(X'q - Xl)
-   Vd = -psi''q (1 + w) + X''qs Iq - Ra Id                          (1 + w): convention of the speed voltage
+   Vd = -psi''q (1 + w) + X''qs Iq - Ra Id                          (1 + w): speed voltage, not in PSS/E
    Vq =  psi''d (1 + w) - X''ds Id - Ra Iq
    td = psi1d + (X'd - Xl) Id/k - E'q                               T''do dpsi1d/dt = -k td
    tq = psi2q + (X'q - Xl) Iq/k + E'd                               T''qo dpsi2q/dt = -k tq
    Xad Ifd = (k E'q + (Xd - X'd)(Id - k (X'd - X''d)/(X'd - Xl)^2 td))/(1 - Kw Id), Kw Id within -0.4, 0.4
    T'do dE'q/dt = Efd - Xad Ifd
    T'qo dE'd/dt = (Xq - X'q)(Iq - k (X'q - X''q)/(X'q - Xl)^2 tq) - k E'd;    T'qo = 0 (X'q = Xq): E'd = 0
-   2H dw/dt = Tm - Te - D w   (convention: (Pm - D w)/(1 + w) - Te)
+   2H dw/dt = Tm - Te - D w   (PSS/E's convention: (Pm - D w)/(1 + w) - Te)
    Te = (psi''d - X''ds Id) Iq - (psi''q - X''qs Iq) Id
    Without saturation and with Kw = 0 this is GENROU (where X''q = X''d).
 )";

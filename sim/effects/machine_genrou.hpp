@@ -18,14 +18,14 @@ struct Model : shared::RoundRotor<Model, QuadraticSaturation> {
   static constexpr std::string_view description = R"(
    psi''d = gd1 E'q + (1 - gd1) psi1d          gd1 = (X'' - Xl)/(X'd - Xl)
    psi''q = (1 - gq1) psi2q - gq1 E'd          gq1 = (X'' - Xl)/(X'q - Xl)
-   E'' = (-psi''q + j psi''d)(1 + w) exp(j(delta - pi/2)) behind Ra + jX''    (speed voltage: convention)
+   E'' = (-psi''q + j psi''d)(1 + w) exp(j(delta - pi/2)) behind Ra + jX''    (1 + w): speed voltage, not in PSS/E
    Se = B (psi'' - A)^2/psi'' above A, with Se(1.0) = S1.0 and Se(1.2) = S1.2;  S1.0 = 0: no saturation
    Xad Ifd = E'q + (Xd - X'd)(Id - kd td) + psi''d Se      td = psi1d + (X'd - Xl) Id - E'q
    T'do dE'q/dt  = Efd - Xad Ifd                           T''do dpsi1d/dt = -td
    T'qo dE'd/dt  = (Xq - X'q)(Iq - kq tq) - E'd + ks psi''q Se     (T'qo = 0: 10 ms in its place)
    tq = psi2q + (X'q - Xl) Iq + E'd                        T''qo dpsi2q/dt = -tq
    kd = (X'd - X'')/(X'd - Xl)^2   kq = (X'q - X'')/(X'q - Xl)^2   ks = (Xq - Xl)/(Xd - Xl)
-   2H dw/dt = Tm - Te - D w   (convention: (Pm - D w)/(1 + w) - Te)      Te = psi''d Iq - psi''q Id
+   2H dw/dt = Tm - Te - D w   (PSS/E's convention: (Pm - D w)/(1 + w) - Te)      Te = psi''d Iq - psi''q Id
 )";
   static std::vector<std::vector<double>> closed_form(const Recording& record, const double* known) {
     std::vector<std::vector<double>> all;

@@ -16,13 +16,13 @@ struct Model : shared::SalientPole {
                                     dyr_name = "GENSAE";
   static constexpr std::string_view description = R"(
    psi''d = gd1 E'q + (1 - gd1) psi1d          gd1 = (X'' - Xl)/(X'd - Xl)
-   E'' = (-psi''q + j psi''d)(1 + w) exp(j(delta - pi/2)) behind Ra + jX''    (speed voltage: convention)
+   E'' = (-psi''q + j psi''d)(1 + w) exp(j(delta - pi/2)) behind Ra + jX''    (1 + w): speed voltage, not in PSS/E
    Se = S1.0 |psi''|^x, x = ln(S1.2/S1.0)/ln 1.2: Se(1.2) = S1.2;  S1.0 = 0: no saturation
    Xad Ifd = E'q + (Xd - X'd)(Id - kd td) + psi''d Se      td = psi1d + (X'd - Xl) Id - E'q
    T'do dE'q/dt   = Efd - Xad Ifd                          kd = (X'd - X'')/(X'd - Xl)^2
    T''do dpsi1d/dt = -td                                   ks = (Xq - Xl)/(Xd - Xl)
    T''qo dpsi''q/dt = -psi''q (1 + ks Se) - (Xq - X'') Iq
-   2H dw/dt = Tm - Te - D w   (convention: (Pm - D w)/(1 + w) - Te)      Te = psi''d Iq - psi''q Id
+   2H dw/dt = Tm - Te - D w   (PSS/E's convention: (Pm - D w)/(1 + w) - Te)      Te = psi''d Iq - psi''q Id
 )";
   static constexpr auto parameters =
       parameters_with("saturation factor at 1.0 pu flux (0: none)", "saturation factor at 1.2 pu flux");

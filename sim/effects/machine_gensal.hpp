@@ -17,12 +17,12 @@ struct Model : shared::SalientPole {
                                     dyr_name = "GENSAL";
   static constexpr std::string_view description = R"(
    psi''d = gd1 E'q + (1 - gd1) psi1d          gd1 = (X'' - Xl)/(X'd - Xl)
-   E'' = (-psi''q + j psi''d)(1 + w) exp(j(delta - pi/2)) behind Ra + jX''    (speed voltage: convention)
+   E'' = (-psi''q + j psi''d)(1 + w) exp(j(delta - pi/2)) behind Ra + jX''    (1 + w): speed voltage, not in PSS/E
    E'q Se = B (E'q - A)^2 above A, with Se(1.0) = S1.0 and Se(1.2) = S1.2 (d axis only);  S1.0 = 0: none
    Xad Ifd = E'q (1 + Se) + (Xd - X'd)(Id - kd td)         td = psi1d + (X'd - Xl) Id - E'q
    T'do dE'q/dt   = Efd - Xad Ifd                          kd = (X'd - X'')/(X'd - Xl)^2
    T''do dpsi1d/dt = -td                                   T''qo dpsi''q/dt = -psi''q - (Xq - X'') Iq
-   2H dw/dt = Tm - Te - D w   (convention: (Pm - D w)/(1 + w) - Te)      Te = psi''d Iq - psi''q Id
+   2H dw/dt = Tm - Te - D w   (PSS/E's convention: (Pm - D w)/(1 + w) - Te)      Te = psi''d Iq - psi''q Id
 )";
   static constexpr auto parameters =
       parameters_with("saturation factor at 1.0 pu E'q (0: none)", "saturation factor at 1.2 pu E'q");

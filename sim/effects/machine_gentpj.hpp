@@ -29,13 +29,13 @@ struct Model {
    Se = B (u - A)^2/u above A, with Se(1.0) = S1.0 and Se(1.2) = S1.2;  S1.0 = 0: none
    u = |V + (Ra + jXl) I| + Kis |I|                        (air-gap flux and stator current; Kis = 0: GENTPF)
    kd = 1 + Se    kq = 1 + Se Xq/Xd                        X''ds = Xl + (X''d - Xl)/kd, X''qs likewise by kq
-   Vd = -psi''q (1 + w) + X''qs Iq - Ra Id                 (1 + w): convention of the speed voltage
+   Vd = -psi''q (1 + w) + X''qs Iq - Ra Id                 (1 + w): speed voltage, not in PSS/E
    Vq =  psi''d (1 + w) - X''ds Id - Ra Iq
    Xad Ifd = kd (E'q (Xd - X''d) - psi''d (Xd - X'd))/(X'd - X''d)      T'do dE'q/dt = Efd - Xad Ifd
    T'qo dE'd/dt = -kq (E'd (Xq - X''q) + psi''q (Xq - X'q))/(X'q - X''q);  T'qo = 0 (X'q = Xq): E'd = 0
    T''do dpsi''d/dt = -kd (psi''d - E'q) - (X'd - X''d) Id
    T''qo dpsi''q/dt = -kq (psi''q + E'd) - (X'q - X''q) Iq
-   2H dw/dt = Tm - Te - D w   (convention: (Pm - D w)/(1 + w) - Te)
+   2H dw/dt = Tm - Te - D w   (PSS/E's convention: (Pm - D w)/(1 + w) - Te)
    Te = (psi''d - X''ds Id) Iq - (psi''q - X''qs Iq) Id
    Without saturation this is GENROU with Xl = X'' in its rotor circuits.
 )";

@@ -17,13 +17,13 @@ struct Model {
                                         "of class P and M";
   static constexpr Slot slot = Slot::measurement;
   static constexpr std::string_view description = R"(
-  V, I --[ average over the window w ]--( class P: 1 / sin )-- V', I'       df = d(angle V')/dt
+  V, I --[ average over the window w ]--( class P: 1 / sin )-- V', I'       df = d(angle V')/dt / (2 pi f0)
 
   class 0 (P): w(t) = 1 - |t| / T,  |t| < T = scale / f0              two cycles at scale = 1
-               with compensation = 1, V' and I' are divided by sin(pi (f0 + 1.625 scale df) / (2 f0)),
+               with compensation = 1, V' and I' are divided by sin(pi/2 (1 + 1.625 scale df)),
                which restores the magnitude off nominal frequency
   class 1 (M): w(t) = sin(x) / x (0.54 + 0.46 cos(pi t / L)),  |t| < L,  x = 4 pi Ffr t / scale
-               Ffr and L = scale N / (32 f0) from the standard's table for the reports per second
+               Ffr and the order N from the standard's table for the reports per second, L = scale N / (32 f0)
   The same w for V and I. The window is integrated over a cubic through the samples, independent of their rate;
   outside the record the phasors are constant. A step is only as sharp as the samples resolve it.
 )";
