@@ -26,7 +26,7 @@ inline constexpr std::array<ChannelRecord, 9> kChannels = {{
     {Channel::Tm, "Tm", "pu", "mechanical torque; mechanical power with the conventions of PSS/E"},
 }};
 inline constexpr int kChannelCount = static_cast<int>(kChannels.size());  ///< number of channels
-/// Returns the record of the channel with this name, nullptr if there is none.
+/// Returns the definition of the channel with this name, nullptr if there is none.
 constexpr const ChannelRecord* find_channel(std::string_view name) {
   for (const auto& c : kChannels)
     if (c.name == name) return &c;

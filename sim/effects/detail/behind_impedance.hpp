@@ -13,8 +13,8 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// A Model must enumerate the parameters below by the names of their records, and Te and Tfreq. It must also
-/// have the coefficients that prepare_common() fills, and the states Ip, Iq, Vf, Vrlag and Vilag.
+/// A Model must enumerate the parameters below (kTg as Tg, and so on), Te and Tfreq. It must also have the
+/// coefficients that prepare_common() fills, and the states Ip, Iq, Vf, Vrlag and Vilag.
 template <class Model>
 struct BehindImpedance : ControlledCurrent<Model> {
   static constexpr Source defaults_from = literature::own("as REGCA1's");

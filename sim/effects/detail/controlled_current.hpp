@@ -25,7 +25,7 @@ struct ControlledCurrent {
   static constexpr State kVrlag = {"Vrlag", "pu", "lagged voltage, real part", 0.1},
                          kVilag = {"Vilag", "pu", "lagged voltage, imaginary part", 0.1};
   /// Reactance of the source in the network equations [pu]. Any value gives exact results (decision 37); a
-  /// large one gives fast convergence.
+  /// large one gives fast convergence of the network iteration.
   static constexpr double kReactance = 10.0;
   static constexpr double kNoFrequency =
       1e-3;  ///< voltage below which the measured frequency fades to f0 [pu]

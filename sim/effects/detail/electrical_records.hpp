@@ -131,7 +131,7 @@ constexpr std::array<Parameter, 4 * N> limit_points(double most_q, double most_p
   }
   return all;
 }
-/// Concatenates arrays of records.
+/// Concatenates arrays of parameter definitions.
 template <std::size_t... N>
 constexpr auto joined(const std::array<Parameter, N>&... parts) {
   std::array<Parameter, (N + ...)> all{};

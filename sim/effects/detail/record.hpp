@@ -1,6 +1,6 @@
 #pragma once
-// Helpers for the parameter records of related effects: a copy with another name or default, and the columns
-// of a .dyr record in the order of the parameters.
+// Helpers for the parameter definitions of related effects: a copy with another name or default, and the
+// columns of a .dyr record in the order of the parameters.
 #include <array>
 #include <cstddef>
 #include <numeric>
@@ -10,12 +10,13 @@
 
 namespace swingbank::sim::effects::shared {
 
-/// Returns the record with another name and symbol.
+/// Returns the parameter definition with another name and symbol.
 constexpr Parameter renamed(Parameter record, std::string_view name) {
   record.name = record.symbol = name;
   return record;
 }
-/// Returns the record with another default. `from`: source of the default; if omitted, the effect's source.
+/// Returns the parameter definition with another default. `from`: source of the default; if omitted, the
+/// effect's source.
 constexpr Parameter with(Parameter record, double standard, Source from = kAsEffect) {
   record.default_value = standard;
   record.default_from = from;

@@ -18,7 +18,7 @@ namespace swingbank::sim::effects::shared {
 inline constexpr std::string_view kDeadBandStep =
     "a dead-band with a step and hysteresis at its edge is not modelled";
 
-/// Checks of the values of one record; every violation becomes a problem.
+/// Checks of the parameter values of one effect; every violation becomes a problem.
 class ValueCheck {
  public:
   /// All arguments must outlive the object. `model`: name in messages; `p`: values of `parameters`.
