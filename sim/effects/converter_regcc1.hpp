@@ -39,8 +39,8 @@ struct Model : shared::BehindImpedance<Model> {
   Re and Xe are given in the .raw: ZSORCE. The order of the .dyr is GridPACK's: REGCB1's columns, then Kip to wmin.
       PSS/E's own order is not public; Vpllfrz has no column and is given in plant files.
   WECC's model has no Tg: PowerWorld uses four time steps instead; Tg is GridPACK's.
-  Characteristic polynomial of the current: Te s^2 + (1 + Kip) s + Kii. With the defaults it decays with a time constant
-      of 20 ms (Tg) and has a damping of 0.7; with Kip = 10 its fastest time constant is 1.8 ms.
+  Characteristic polynomial of the current: Te s^2 + (1 + Kip) s + Kii. With the defaults it decays with a time
+      constant of 20 ms (Tg) and has a damping of 0.7; with Kip = 10 its fastest time constant is 1.8 ms.
       Te = 0: (1 + Kip) s + Kii.
 )";
   enum P {

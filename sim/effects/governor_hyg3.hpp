@@ -38,7 +38,7 @@ struct Model {
            u - Rgate CV - y --> [ Ki/s ] --> CV
   CV and the integral of Ki: Pmin to Pmax
   CV - GV --> [ Kg/(1 + s Tp), VELclose to VELopen ] --> [ 1/s, Pmin to Pmax ] --> gate --> [ backlash ] --> GV
-  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms, so that it can be integrated
+  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms for the integration
   PGV: linear between (0, 0), (GV1, PGV1) to (GV6, PGV6), (1, 1); the ends only if the curve rises there; no
        points: PGV = GV
   TW dq/dt = H0 - h            h = (q/PGV)^2, PGV not below 0.01

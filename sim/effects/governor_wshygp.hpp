@@ -30,7 +30,7 @@ struct Model {
          back: CV (TT = 0), P/(1 + s TT) (TT > 0)         b(w): 0 within +-db1, beyond it w minus the nearer edge
   CV - GV --> [ KG/(1 + s TP), VELclose to VELopen ] --> [ 1/s, PMIN to PMAX ] --> gate --> [ backlash ] --> GV
   GV --> [ NGV ] --> [ (1 + s Aturb Tturb)/(1 + s Bturb Tturb) ] --> Pm
-  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms, so that it can be integrated
+  backlash: GV follows the gate at the distance db2 (0: none), with a lag of 20 ms for the integration
   NGV: linear between (GV1, PGV1) and (GV5, PGV5), up to the last ascending point; no points: GV
   Power and gate are per unit of TRATE (0: the machine's base). VELclose: only the magnitude counts.
 )";

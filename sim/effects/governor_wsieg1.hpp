@@ -24,7 +24,7 @@ struct Model {
   gate --> [ NGV ] --> [ 1/(1 + s T4) ] --x4--> [ 1/(1 + s T5) ] --x5--> [ 1/(1 + s T6) ] --x6--> [ 1/(1 + s T7) ] --x7
   Pm = K1 x4 + K3 x5 + K5 x6 + K7 x7
   b(w): 0 within +-db1, beyond it w minus the nearer edge (err = 0 or db1: no step at the edge)
-  backlash: the gate follows the valve at the distance db2 (0: none), with a lag of 20 ms, so that it can be integrated
+  backlash: the gate follows the valve at the distance db2 (0: none), with a lag of 20 ms for the integration
   NGV: linear between (GV1, PGV1) and (GV5, PGV5), up to the last ascending point; no points: PGV = gate
   IBLOCK: the operating point replaces PMIN = 0 (1), PMAX = 0 (2) or both (3)
   One shaft only: JBUS, M and the shares K2, K4, K6, K8 of a second generator are zero.
