@@ -14,7 +14,7 @@
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-of_others='PsseRecords|MatpowerRecords|RecorderFiles|DynawoRecords|EveryUnitFull|ReplayFull|others_plants|cases_as_found' # tests that read external files
+of_others='PsseRecords|OpenipslRecords|MatpowerRecords|RecorderFiles|DynawoRecords|EveryUnitFull|ReplayFull|others_plants|cases_as_found' # tests that read external files
 fast_only=0 nightly=0 with_psse=1 sanitize=0 ci=0
 while (($#)); do
   case $1 in

@@ -275,8 +275,8 @@ struct Model {
     const T pgv = x[flow] / c[root];
     if (value_of(pgv) < kShut)
       return fmt::format(
-          "the operating point needs a flow of {:.4g} pu, but a gate with less than {:g} pu is shut",
-          value_of(x[flow]), kShut);
+          "the operating point needs {:.4g} pu of the gate's curve, but a gate with less than {:g} pu is shut",
+          value_of(pgv), kShut);
     x[gate] = x[position] = Curve::opening(c + curve, pgv);
     x[velocity] = x[second] = T(0.0);
     x[measured] = c[base] * s.P;

@@ -159,7 +159,9 @@ int Reader::operating_value(const Node& n, const std::string& key, int index, co
   const SignalRecord& s = kSignals[static_cast<std::size_t>(index)];
   const bool of_machine = s.made_in == Slot::machine || base == "Efd" || base == "Tm";
   if (!of_machine && !(s.made_in < user_model_.slot)) {
-    (void)signal(n, key, index);
+    problem(key, n.at, "signal " + n.name,
+            fmt::format("{} is initialised before this value is known", user_model_.output_name()),
+            "use the value of an earlier signal");
     return graph_.constant(0.0);
   }
   const auto [at, fresh] = operating_.try_emplace(n.name, -1);

@@ -217,7 +217,8 @@ ReportFigures report_figures(const Diagnosis& d) {
                                        event::FitEventOptions{}.pre_event, r.event->filtered_samples);
     Doubts doubts{noise::voltage_doubt({d.base.plant, d.conventions}, d.events.whitened(e)), {}};
     if (figures.after)
-      doubts.after = noise::voltage_doubt({figures.after->plant, d.conventions}, d.events.whitened(e));
+      doubts.after = noise::voltage_doubt(
+          {figures.after->plant, best ? best->hypothesis.conventions : d.conventions}, d.events.whitened(e));
     for (std::size_t c = 0; c < r.event->channels.size(); ++c)
       r.channels.push_back(channel_of(d, figures.after, e, c, r.windows, doubts));
     r.before = std::sqrt(d.base.events[e].reduced_chi2());

@@ -71,7 +71,7 @@ class Parser {
   }
 
  private:
-  static constexpr int kDeepest = 100;  ///< maximum nesting of brackets; bounds the parser's recursion
+  static constexpr int kDeepest = 100;  ///< maximum nesting of brackets and signs; bounds the parser's recursion
   static constexpr double kLargestPower = 16;
 
   static bool compares(const Node& n) { return n.op == Op::less || n.op == Op::less_equal; }
@@ -107,7 +107,7 @@ class Parser {
   /// Parses operators with a higher precedence than `binding`.
   Tree expression(int binding) {
     if (++depth_ > kDeepest)
-      fail(at_, "brackets nested too deeply", fmt::format("at most {} levels are read", kDeepest),
+      fail(at_, "an expression nested too deeply", fmt::format("at most {} levels are read", kDeepest),
            "split the expression with [signals]");
     Tree left = operand();
     while (const Operator* o = peek_operator()) {

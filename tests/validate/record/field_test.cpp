@@ -260,6 +260,14 @@ TEST(LostFramesTest, IncludeRowsWithoutValues) {
   EXPECT_EQ(r.V[600], 1.02) << "P alone is missing: the voltage is as recorded";
   EXPECT_THAT(r.notes, ElementsAre(HasSubstr("2 gaps"), HasSubstr("P_pu has no value in 1 of 900")));
 }
+TEST(LostFramesTest, PowerOf999MegawattsIsAValue) {
+  const auto text = table("t_s,V_pu,theta_rad,P_MW,Q_Mvar\n", 900, [](int k) {
+    return fmt::format("{:.7f},1.02,0.1,{},10", k / 30.0, k == 600 ? 999 : 998);
+  });
+  const Record r = parse_record(text, "r.csv", kTestBase);
+  EXPECT_EQ(std::ranges::count(r.lost, 1), 0);
+  EXPECT_NEAR(r.P[600] * kTestBase.mva, 999, 1e-9);
+}
 TEST(LostFramesTest, KeepVoltage_WhenAnotherQuantityIsMissing) {
   const auto with = [](const std::string& q, int first, int count) {
     return table(kHeader, 900, [&](int k) {

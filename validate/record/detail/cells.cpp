@@ -170,9 +170,8 @@ bool is_word(std::string_view cell) {
 }
 
 bool is_code(double v) {
-  for (const double code : {-999.0, 9999.0, 99999.0, 999999.0})
-    if (std::abs(v) == std::abs(code) && (v > 0 || code == -999.0 || v < -999.0)) return true;
-  return std::abs(v) >= 1e30;
+  const double size = std::abs(v);  // +999 may be a power in MW
+  return v == -999.0 || size == 9999.0 || size == 99999.0 || size == 999999.0 || size >= 1e30;
 }
 
 TableTop find_top(std::string_view text, const ColumnMap& columns) {
