@@ -58,7 +58,8 @@ struct AnalysisOptions {
              .one_value_a_mention());
     line.group("Events");
     keep(reading.add_switch(line));
-    keep(line.add("--step-threshold", step_threshold, "smallest voltage step detected as a switching [pu]")
+    keep(line.add("--step-threshold", step_threshold,
+                  "voltage step of a switching [pu]; a fit also uses steps of half this size")
              .shows_default()
              .positive());
     keep(line.add("--pre-event", pre_event,

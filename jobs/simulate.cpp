@@ -426,7 +426,7 @@ int run(CommandLine& line, int argc, char** argv) {
   line.add_choice(
       "--repeated", o.repeated, grid::kRepeatedWords,
       "network equipment with a repeated id: refuse it, keep it under a new id (keep), or keep it under a "
-      "new id only if this improves the power balance at the file's voltages (voltages)");
+      "new id unless this worsens the power balance at the file's voltages (voltages)");
   line.add("--ignore-model", o.ignore_models,
            "names of .dyr models to ignore, comma-separated; may be repeated")
       .comma_separated();

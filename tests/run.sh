@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs missing packages, builds and runs the tests.
 #   bash tests/run.sh [--fast | --nightly] [--without-psse] [--sanitize] [--ci]
-#     --fast          the fast tier only (under 2 minutes once built)
+#     --fast          the fast tier only (about 2 minutes once built)
 #     --nightly       only the nightly tier: long tests, the one-definition rule across all modules, thread sanitizer, the
 #                     tests of the modules that read files under both sanitizers, and the SIMD batches, one instruction set
 #                     per run: more than an hour (research/nightly.sh runs it, and the fuzz targets after it)

@@ -82,8 +82,8 @@ void bind_class(py::module_& module) {
       .def_property_readonly(
           "hypotheses", &hypotheses,
           "Every hypothesis: name, description, side, evidence, reduced_chi2, accepted,\n"
-          "why_not; in descending order of evidence. An unpromising one was not fitted and\n"
-          "has the reduced_chi2 of the given plant.")
+          "why_not; accepted ones first, each group in descending order of evidence. An unpromising\n"
+          "one was not fitted and has the reduced_chi2 of the given plant.")
       .def_property_readonly(
           "torque", [](const Diagnosis& d) { return inferred(d, d.result.torque); },
           "Inferred additional torque [pu on the machine base] for each record: (times [s], values), arrays of\n"

@@ -150,7 +150,8 @@ void bind_addition(py::module_& module) {
       .def_readonly("adequate", &Addition::adequate, "Whether only noise remains in every event.")
       .def_readonly(
           "accepted", &Addition::earns,
-          "Whether the evidence is very strong (above 10) and no held-out event is worse with the effect.")
+          "Whether the evidence of every added effect is very strong (above 10) and every held-out event improves\n"
+          "or has only noise left.")
       .def_readonly("evidence", &Addition::evidence,
                     "2 ln(Bayes factor) over the refit without the effect [-].")
       .def_readonly("sentence", &Addition::sentence, "Result in words.")

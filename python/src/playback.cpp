@@ -134,7 +134,9 @@ void bind_playback_class(py::module_& module) {
       .def_property_readonly(
           "t", [](const Playback& p) { return array(p.event.record.t); }, "Times, shape (samples,) [s].")
       .def_property_readonly("switching_times", &switching_times, "Switching times that were used [s].")
-      .def_property_readonly("channels", &channels, "Compared channels: P, Q, then recorded states.")
+      .def_property_readonly(
+          "channels", &channels,
+          "Compared channels: P and Q (with input=\"pq\": V and its angle), then recorded states.")
       .def_readonly("complete", &Playback::complete,
                     "Whether only noise remains in this event; of a Comparison: in all its events.")
       .def_property_readonly(

@@ -17,8 +17,8 @@ struct ChannelRecord {
 inline constexpr std::array<ChannelRecord, 9> kChannels = {{
     {Channel::delta, "delta", "rad", "rotor angle in the synchronous frame"},
     {Channel::speed, "speed", "pu", "speed deviation"},
-    {Channel::P, "P", "pu", "active power out of the machine"},
-    {Channel::Q, "Q", "pu", "reactive power out of the machine"},
+    {Channel::P, "P", "pu", "active power out of the plant"},
+    {Channel::Q, "Q", "pu", "reactive power out of the plant"},
     {Channel::V, "V", "pu", "terminal voltage magnitude"},
     {Channel::theta, "theta", "rad", "terminal voltage angle in the synchronous frame; constant while V = 0"},
     {Channel::Efd, "Efd", "pu", "field voltage, 1 pu on the air-gap line"},

@@ -80,8 +80,7 @@ void work(const std::vector<record::Record>& records, const AddOptions& options,
       return;
     }
   }
-  c.sentence =
-      fmt::format("Not adequate: the residual exceeds noise with {} added effects ({}).", most, names);
+  c.sentence = fmt::format("Not adequate: the residual exceeds noise after {} additions ({}).", most, names);
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ class Check : Findings {
       warn("held_samples",
            fmt::format("{} samples in a row equal the previous one, from t = {:.4g} s",
                        signals_.longest_repeat, r_.t[signals_.repeat_start]),
-           "all channels are constant although the record has noise",
+           "V, its angle, P and Q are constant although the record has noise",
            "check whether data were lost and the instrument repeated its last value");
   }
 

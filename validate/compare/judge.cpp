@@ -55,7 +55,7 @@ std::string vague_sentence(const std::vector<NamedBin>& bins, int vague) {
           : fmt::format("more than {:g} times the nominal value", kNoSize);
   return fmt::format(
       "Undecided: the model is unstable in this playback. In {} of {} time/frequency bins the "
-      "voltage noise alone may change the response by more than its nominal value ({} {}: by "
+      "noise of the played-in signals alone may change the response by more than its nominal value ({} {}: by "
       "{}). Check the damping, the time constants and the order of the reactances.",
       vague, bins.size(), most.channel->name, most.where, by);
 }

@@ -345,7 +345,7 @@ bool put_onto_mean_rate(Comtrade& c) {
   for (std::size_t channel = 0; channel < even.size(); ++channel)
     c.channels[channel].values = std::move(even[channel]);
   c.notes.push_back(fmt::format(
-      "The record has {} sampling rates from {:.6g} to {:.6g} samples/s; its waveforms were resampled "
+      "The record has {} sections with sampling rates from {:.6g} to {:.6g} samples/s; its waveforms were resampled "
       "uniformly at {:.7g} samples/s.",
       c.stretches.size(), low.rate, high.rate, rate));
   c.t = std::move(t);

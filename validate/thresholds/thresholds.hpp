@@ -24,10 +24,11 @@ struct Evidence {
       "least evidence of an accepted effect; the best of about thirty wrong effects reached 20 "
       "in thirty development cases without a hidden effect (decisions 16 and 41)"};
   /// Additional evidence of a pair of effects over every single effect [chi2].
-  Threshold second{"evidence.second", 80, "chi2",
-                   "least advantage of a pair over every single effect, in evidence and in chi2, because "
-                   "the residual of the first effect or of the instruments resembles a second effect "
-                   "(decision 61)"};
+  Threshold second{
+      "evidence.second", 80, "chi2",
+      "least advantage of a pair over every accepted single effect, in evidence and in chi2, because "
+      "the residual of the first effect or of the instruments resembles a second effect "
+      "(decision 61)"};
   /// Largest gain in evidence that a longer fit is expected to bring [chi2].
   Threshold within_reach{"evidence.within_reach", 200, "chi2",
                          "largest gain that a long fit is expected to add to a short one; hypotheses whose "
@@ -178,7 +179,7 @@ struct UserModels {
   /// to be searched, unless the remaining residual counts as noise [-].
   Threshold explains{"user_models.explains", 0.3, "share of the base model's chi2",
                      "largest share that may remain with the inferred input if a user-defined model is "
-                     "searched: a reduction by 70 % (decision 21)"};
+                     "searched, unless the remainder is within noise (decision 21)"};
   /// Largest ratio of chi2 at which models of the other inferred input are searched too [-].
   Threshold as_much{
       "user_models.as_much", 1.5, "ratio of chi2",
@@ -207,10 +208,11 @@ inline constexpr UserModels user_models;  ///< the thresholds in use
 /// times the evidence because it selects the best of about thirty, some of which fit by chance.
 struct Addition {
   /// Evidence above which a named effect is added [chi2].
-  Threshold strong{"addition.strong", 10, "chi2",
-                   "least evidence of an effect named by the user, if no held-out event is worse with it: "
-                   "very strong evidence of one hypothesis against one other (Kass and Raftery, JASA 90, "
-                   "1995); diagnose selects the best of many and needs evidence.accepted"};
+  Threshold strong{
+      "addition.strong", 10, "chi2",
+      "least evidence of an effect named by the user, if every held-out event improves or is within noise: "
+      "very strong evidence of one hypothesis against one other (Kass and Raftery, JASA 90, "
+      "1995); diagnose selects the best of many and needs evidence.accepted"};
   /// Evidence at or below which an earlier addition is removed [chi2].
   Threshold stays{"addition.stays", 0, "chi2",
                   "an earlier addition is removed if its evidence, given the later additions, falls to this"};
