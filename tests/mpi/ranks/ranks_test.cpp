@@ -193,7 +193,7 @@ TEST(Report, RoundTripKeepsPathsThatAreNotUtf8) {
   EXPECT_EQ(unpack(pack(r)).problems.at(0).where, "/data/m\xEF\xBF\xBDller");  // U+FFFD
 }
 
-/// With several ranks, this test ends all of them, so tests/mpi/failing_rank.sh runs it separately.
+/// With several ranks, this test ends all of them, so tests/mpi/failing_rank_full.sh runs it separately.
 class FailingRank : public Ranks {};
 
 TEST_F(FailingRank, EndsAll) {

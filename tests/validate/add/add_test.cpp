@@ -164,7 +164,7 @@ TEST(Add, NamesAnEffectThatWasRemoved) {
   EXPECT_TRUE(r.model.plant.controls.empty());
 }
 
-TEST(Add, FindsMissingInstrument) {
+TEST(AddFull, FindsMissingInstrument) {
   const test::InstrumentExample example({test::instrument("CTERROR:gain=0.03,phase=-0.04")});
   plant::PlantModel model = example.truth;
   model.plant.measurements.clear();
@@ -197,7 +197,7 @@ std::vector<record::Record> with_lag(const plant::PlantModel& model) {
   return lagged;
 }
 
-TEST(Add, RemovesTheLagOfTheFrequency) {
+TEST(AddFull, RemovesTheLagOfTheFrequency) {
   const plant::PlantModel model = example(true);
   AddOptions options = power_only();
   options.calibrate.held_out = {"avr_ev3.csv"};
