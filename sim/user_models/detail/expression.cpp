@@ -71,7 +71,8 @@ class Parser {
   }
 
  private:
-  static constexpr int kDeepest = 100;  ///< maximum nesting of brackets and signs; bounds the parser's recursion
+  static constexpr int kDeepest =
+      100;  ///< maximum nesting of brackets and signs; bounds the parser's recursion
   static constexpr double kLargestPower = 16;
 
   static bool compares(const Node& n) { return n.op == Op::less || n.op == Op::less_equal; }

@@ -270,10 +270,9 @@ Table several_table(const Task& task) {
 }
 
 Table effort_table(const Task& task) {
-  Table table{
-      "Computing cost: rows and epochs of a run; processor time of all runs.",
-      {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]"},
-      {}};
+  Table table{"Computing cost: rows and epochs of a run; processor time of all runs.",
+              {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]"},
+              {}};
   for (const auto& method : task.methods())
     for (const double level : task.levels()) {
       const auto runs = runs_of(task, {method, level});
