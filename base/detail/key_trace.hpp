@@ -1,5 +1,6 @@
 #pragma once
-// Record of one call of a config-reading function without a file: the keys that it reads, and its decisions.
+// Record of a dry run of a config-reading function, for which no file exists: the keys that it asks for, and
+// its decisions.
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -35,7 +36,7 @@ struct KeyForm {
   }
 };
 
-/// Property of a file whose outcome determines which keys the reader asks for next.
+/// Question about a file, whose answer determines which keys the reader asks for next.
 struct KeyDecision {
   KeyPath path;  ///< key
   std::vector<nlohmann::ordered_json>

@@ -21,7 +21,7 @@ struct Model {
          --> [ (1 + s TC1)/(1 + s TB1) ] --> [ KA/(1 + s TA) ] --> Va, [VAMIN, VAMAX] non-windup
   u = Va + Vs (VOS = 2) - max(KLR (Ifd - ILR), 0)
   u --> [V VRMIN, V VRMAX - KC Ifd] --> Efd         Vf = s KF/(1 + s TF) u
-  An under-excitation limiter adds to the error (UEL = 1); gates of other limiters (UEL = 2, 3) are not modelled.
+  The signals of all limiters are added to the error; the gates of UEL = 2 and 3 are not modelled.
 )";
   enum P {
     UEL,
@@ -45,7 +45,8 @@ struct Model {
     KLR,
     ILR
   };
-  static constexpr Source kNone = literature::own("off; 999 means none in the case files");
+  static constexpr Source kNone =
+      literature::own("beyond every output, or off; the case files write 999 for no limit");
   static constexpr Source defaults_from = literature::own("as EXST1's");
   static constexpr Source bounds_from = shared::kBeyondCases;
   static constexpr Parameter parameters[] = {
@@ -131,7 +132,7 @@ struct Model {
     values.require_time(TF, p[KF] != 0, "KF = 0");
     values.refuse(p[KF] != 0 && !(p[TA] > 0), values.text(KF, TA),
                   "the rate feedback would form an algebraic loop", "give TA > 0, or KF = 0");
-    values.refuse_negative({KLR}, "it would raise the field current");
+    values.refuse_negative({KLR}, "it would lower the field voltage below ILR");
     values.require_above(VIMAX, VIMIN);
     values.require_above(VAMAX, VAMIN);
     values.require_above(VRMAX, VRMIN);

@@ -1,6 +1,6 @@
 #pragma once
 // One unit of a case: reader of the records of one generator, and writer of .dyr and .dyd records. Errors
-// elsewhere in the case do not affect the reader.
+// elsewhere in the case do not affect the reader, except in a MATPOWER case.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -24,9 +24,9 @@ struct UnitChoice {
   /// keeps the values; any other replacement has its own defaults.
   formats::DyrOptions models = {};
   std::optional<int> measured_at = {};  ///< measured bus beyond the unit's transformer
-  /// Treatment of records that are too short (fill values) or too long (surplus values are dropped).
+  /// Treatment of records with too few or too many values: refused, or completed and truncated.
   Lacking complete_records = Lacking::refused;
-  bool dyd = false;  ///< true if `dyr` is a PSLF .dyd (formats::survey_dyd) with any extension
+  bool dyd = false;  ///< true if `dyr` is a PSLF .dyd (formats::survey_dyd) whatever its extension
 };
 
 /// Power and voltage of a unit in its case, at the measured bus.
@@ -49,13 +49,15 @@ struct Unit {
   std::vector<std::string> notes;         ///< messages about interpreted and dropped data
 };
 
-/// Reads one unit. Throws InputError with the errors of this unit only, each with its line: unknown bus or
-/// unit, unknown models, wrong column counts, inconsistent values.
+/// Reads one unit. Throws InputError with the errors of this unit only (of a MATPOWER case: with all errors),
+/// with their lines where there is one: unknown bus or unit, unknown models, wrong column counts,
+/// inconsistent values.
 Unit read_unit(const UnitChoice& choice);
 
-/// Returns the .dyr records of the plant's machine and controls. A user-defined model or a value without a
-/// column becomes a problem. Values that belong in the .raw appear as comments. Instruments and changes of
-/// set-points belong to an event's record and are omitted.
+/// Returns the .dyr records of the plant's machine and controls. A model without a .dyr form, or a
+/// value that has no column and is not its null value or default, becomes a problem. Values that belong in
+/// the .raw appear as comments. Instruments and changes of set-points belong to an event's record and are
+/// omitted.
 std::string unit_dyr(const plant::Plant& plant, int bus, const std::string& id, const std::string& where,
                      Problems& problems);
 

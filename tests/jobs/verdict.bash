@@ -12,6 +12,7 @@ sexs 100 >"$work/right.toml"
 gives() {
   local expected=$1 said=$2 code=0
   shift 2
+  rm -rf "$work/out"
   "$@" --out "$work/out" >"$work/text" 2>"$work/notes" || code=$?
   ((code == expected)) || fail "exit code $code, expected $expected: $* said: $(tail -n 3 "$work/text" "$work/notes")"
   grep -q -- "$said" "$work/text" || fail "'$said' is not in: $(cat "$work/text")"

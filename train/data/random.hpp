@@ -13,7 +13,7 @@ constexpr std::uint64_t mix(std::uint64_t z) {
   z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
   return z ^ (z >> 31);
 }
-/// Purpose of a random stream, so that no two streams share a key.
+/// Purpose of a random stream; part of its key, so that streams of different purposes differ.
 enum class Purpose : std::uint64_t {
   weights = 1,
   dropout,

@@ -15,8 +15,8 @@ std::unique_ptr<Network> make_network(const std::string& name, const NetworkShap
     if (record.name == name) return record.make(shape);
     names += (names.empty() ? "" : ", ") + std::string(record.name);
   }
-  throw InputError(
-      {"no network called '" + name + "'", "network", "there is no such network", "choose one of: " + names});
+  throw InputError({"no network called '" + name + "'", "kind of the network",
+                    "this version has no such network", "choose one of: " + names});
 }
 
 std::int64_t parameter_count(Network& network) {

@@ -23,10 +23,10 @@ HandedIn handed_in(const plant::PlantModel& model, const std::vector<EventCompar
 
 /// Adds the section with the nameplate; missing fields are listed as "missing".
 void nameplate_part(report::Document& page, const HandedIn& model);
-/// Adds the section with verdict and figures of the usability check.
+/// Adds the section with the verdict and the table of the usability check.
 void usability_part(report::Document& page, const HandedIn& model);
-/// Returns usability and nameplate as terminal text: verdict and largest figures of the usability, and the
-/// missing fields of the nameplate.
+/// Returns usability and nameplate as terminal text: verdict, largest drift, smallest damping ratio and
+/// failures of the usability check, and the missing fields of the nameplate.
 std::string handed_in_text(const HandedIn& model);
 /// Returns given and missing fields of the nameplate as JSON; dates and texts as text, ratings as numbers.
 nlohmann::json nameplate_json(const HandedIn& model);

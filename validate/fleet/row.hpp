@@ -28,15 +28,18 @@ struct FleetRow {
   std::string side;
   SubmittedError error;
   double evidence = 0;  ///< 2 ln(Bayes factor) of the leading accepted hypothesis; NaN: no effect was named
-  double left = 0;      ///< normalised RMS of the refitted model without an effect
-  double unseen_before = 0, unseen_after = 0;  ///< normalised RMS over held-out events; NaN: not judged
-  double chance = 0;                           ///< probability from chance_of(); NaN: no effect was named
+  double left = 0;      ///< normalised RMS of the residual of the refitted model, before an effect is added
+  double unseen_before = 0, unseen_after = 0;  ///< normalised RMS on held-out events without and with the
+                                               ///< leading hypothesis; NaN: not judged
+  double chance =
+      0;  ///< upper bound of the probability that noise alone gives this gain; NaN: no effect was named
   int events = 0;
   std::string sentence;  ///< verdict, or the problems, one per line
   std::string inputs;    ///< hash of all inputs of the row
   [[nodiscard]] bool failed() const { return verdict == "failed"; }
-  /// Returns whether the model as submitted is adequate. A model that is adequate only with refitted
-  /// parameters, and not fit for purpose as submitted, has wrong parameters.
+  /// Returns whether the refitted model is adequate and the submitted one is not unfit for purpose. A model
+  /// that is adequate only with refitted parameters, and not fit for purpose as submitted, has wrong
+  /// parameters.
   [[nodiscard]] bool adequate() const { return verdict == "adequate" && error.fit != "no"; }
 };
 /// Returns the row of a plant that could not be diagnosed, with the reason `why`.

@@ -25,7 +25,7 @@ class NoiseTransfer {
   [[nodiscard]] double chi2_of(const sim::plant::PlantUnderTest& tested) const;
 
   event::FitEvent quiet_, noisy_;
-  EventNoise noise_;  ///< noise of both events
+  EventNoise noise_;  ///< noise with which quiet_ and noisy_ are whitened
   double times_ = 0;  ///< number of values in all events over the number in the simulated minute
   double own_ = 0;
 };

@@ -11,7 +11,7 @@
 
 namespace swingbank::validate::noise {
 
-/// References to one event and its noise, which must outlive it.
+/// References to one event and its noise. Both must outlive this object.
 struct WhitenedEvent {
   const event::FitEvent& event;  ///< event with its record
   const EventNoise& noise;       ///< noise of its channels

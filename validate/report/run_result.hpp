@@ -47,6 +47,7 @@ struct RunResult {
   double mse = 0, mse_varied_only = 0, baseline_mse = 0, ratio = 0;
   ///< mean over all parameters; over the varying ones; MSE of predicting the training mean; mse /
   ///< baseline_mse
+
   /// MSE on the validation rows, whose generators also have training rows; NaN: nothing was trained.
   double seen = 0;
   double H_ratio = 0;                       ///< ratio for H alone; NaN if H is constant

@@ -106,9 +106,10 @@ const sim::plant::Block* added_block(const add::Addition& added) {
 void add_effect_to(toml::table& dataset, const Base& base, const add::Addition& added,
                    const RetrainOptions& options) {
   if (added.hypothesis.replaces)
-    throw InputError({"effect " + added.hypothesis.name, "--retrain",
-                      "the datasets may differ only in an added effect, not in a replaced one",
-                      "give the model that already contains the effect"});
+    throw InputError(
+        {"effect " + added.hypothesis.name, "--retrain",
+         "retraining compares a network with and one without an added effect; this one replaces another",
+         "give a plant file that already contains it"});
   const sim::plant::Block* block = added_block(added);
   if (block != nullptr) {
     if (!dataset["attach"].is_array()) dataset.insert_or_assign("attach", toml::array{});

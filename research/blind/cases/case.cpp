@@ -25,7 +25,7 @@ constexpr int kSizeTries = 8;        ///< maximum number of simulations in the s
 
 constexpr double kHuge = 1e300;  ///< size of an effect that cannot be simulated
 
-/// Returns whether a kind's path changes a code. A code has no intermediate values.
+/// Returns whether hidden effects of this kind change a code of a model, which has no intermediate values.
 bool turns_a_switch(const BlindKind& kind) {
   return std::ranges::any_of(kind.path, [](const BlindPath& path) {
     const sim::Effect* effect = blind_effect(path.target);
@@ -156,7 +156,7 @@ class Maker {
   }
   void seek(const BlindSize& size, std::size_t k, Scales& alone, BlindTruth& truth) {
     double low = 0.0, high = 1.0, low_left = 0.0, high_left = kHuge, scale = 1.0, best = kHuge;
-    // A correct value has the size 0, which has no logarithm.
+    // If the effect is a wrong value, its size at scale 0 is 0, which has no logarithm.
     const bool logarithmic = truth.kind->logarithmic && !truth.kind->value;
     for (int i = 0; i < kSizeTries; ++i) {
       alone[k] = scale;
@@ -174,7 +174,7 @@ class Maker {
       (left > truth.wanted ? high_left : low_left) = left;
       scale = next_scale(logarithmic, truth.wanted, low, low_left, high, high_left);
     }
-    // An effect below its detection limit at full size is not observable in these events.
+    // Rejects the draw if no scale can be simulated, or if the effect found is too small to be detected.
     if (best == kHuge || truth.left < truth.kind->limit) throw Unstable{};
   }
   /// Returns the sizes after and before the refit at these scales. Both are kHuge if the grid is unstable.
@@ -192,7 +192,8 @@ class Maker {
                            double high_left) {
     const double middle = 0.5 * (low + high);
     if (high_left >= kHuge) return middle;
-    if (logarithmic && low_left == 0.0) return 0.0;  // tests whether the smallest scale is too large
+    if (logarithmic && low_left == 0.0)
+      return 0.0;  // tests whether the size at scale 0 already exceeds the requested one
     double guess = high * wanted / high_left;
     if (logarithmic)
       guess = low + (high - low) * std::log(wanted / low_left) / std::log(high_left / low_left);
@@ -219,7 +220,9 @@ class Maker {
 }  // namespace
 
 BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec) {
-  std::string last = "the grid lost synchronism or a speed deviated by more than 2 %";
+  std::string last =
+      "in each, the grid was unstable, the voltage dip was unsuitable, the hidden effect was too small, or no "
+      "wrong model was physical";
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     BlindDraw draw(spec.seed, spec.index, static_cast<std::uint64_t>(attempt));
     try {
@@ -231,7 +234,7 @@ BlindCase make_blind_case(const BlindConfig& config, const BlindSpec& spec) {
       last = error.what();
     }
   }
-  throw InputError({fmt::format("no stable case in {} attempts", kAttempts),
+  throw InputError({fmt::format("no suitable case in {} attempts", kAttempts),
                     fmt::format("seed {}, case {}", spec.seed, spec.index), last,
                     "check the kinds of the config"});
 }

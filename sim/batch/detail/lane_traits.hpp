@@ -92,6 +92,11 @@ template <class S, int N>
 inline Packed<S, N> minimum(Packed<S, N> a, Packed<S, N> b) {
   return select(a < b, a, b);
 }
+/// Returns the larger of two values, or NaN if one of them is NaN.
+template <class T>
+inline T maximum_or_nan(const T& a, const T& b) {
+  return select(b <= a, a, b + a * T(0.0));  // a NaN in a fails the comparison, and remains by the product
+}
 inline double round_nearest(double a) { return std::nearbyint(a); }
 
 }  // namespace swingbank::sim::batch

@@ -1,12 +1,12 @@
 #pragma once
-// Batch kernel: the integration loop. Every pack step advances each lane by its own step size. Acceptance,
-// switching and refill are independent per lane.
+// Batch kernel: the integration loop. Every step of a SIMD pack advances each lane (one event) by its own
+// step size. Acceptance, switching and refill are independent per lane.
 #include "sim/batch/detail/batch_kernel.hpp"
 
 namespace swingbank::sim::batch {
 
-/// Evaluates the first stage of lanes that were loaded or switched. The other lanes reuse the last stage of
-/// their previous step (first same as last).
+/// Evaluates the first stage of lanes that were loaded, switched or clamped. The other lanes reuse the last
+/// stage of their previous step (first same as last).
 template <class T>
 void BatchKernel<T>::evaluate_fresh() {
   if (timed_) {
@@ -49,7 +49,7 @@ void BatchKernel<T>::stage(const T& h) {
 template <class T>
 T BatchKernel<T>::scaled_error(const T& h) const {
   T worst(0.0);
-  const auto add = [&worst](const T& e) { worst = select(e <= worst, worst, e); };  // propagates NaN
+  const auto add = [&worst](const T& e) { worst = maximum_or_nan(worst, e); };
   for (const int state : moving_) add(own_error(static_cast<std::size_t>(state)));
   if (weighs_)
     for (const Weighed& w : weighed_)
@@ -109,8 +109,7 @@ T BatchKernel<T>::kink_error(std::size_t state) const {
     T sum =
         T(difference[2]) * k_[2][state] + T(difference[3]) * k_[3][state] + T(difference[6]) * k_[6][state];
     sum = sum + T(difference[0]) * k_[0][state] + T(difference[4]) * k_[4][state];
-    const T e = absolute(sum);
-    worst = select(e <= worst, worst, e);
+    worst = maximum_or_nan(worst, absolute(sum));
   }
   return worst * T(kKinkShare * std::max(weight_[state], kKinkWeight / options_.tolerance));
 }
@@ -200,7 +199,8 @@ template <class T>
 void BatchKernel<T>::settle(unsigned accepted, const Next& next, const Done& done) {
   alignas(64) double angle[kLanes];
   Traits::store(angle_spread(y_.data()), angle);
-  // With the next, shorter step, Newton's method starts from 1 pu again.
+  // If the step was rejected, lanes whose Newton's method restarted from V = 0 (solve_algebra) start from 1
+  // pu in the next one.
   if (const unsigned again = per_lane_.fallen & ~accepted; again != 0) begin_search(per_lane_, again, 1.0);
   per_lane_.fallen = 0;
   for (int l = 0; l < kLanes; ++l) {

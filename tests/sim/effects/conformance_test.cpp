@@ -138,7 +138,7 @@ TEST(Conformance, ProblemsNameTheEffectAndItsParameters) {
         Problems problems;
         e.check(e.user_model.get(), p.data(), "test", problems);
         for (const Problem& problem : problems.list()) {
-          const auto words = words_of(problem.sentence());
+          const auto words = words_of(problem.what + ' ' + problem.why);
           for (const auto& other : library::compiled_effects())
             EXPECT_TRUE(&other == &e || !words.contains(other.name)) << e.name << ": " << problem.sentence();
           const auto equals = problem.what.find(" = ");

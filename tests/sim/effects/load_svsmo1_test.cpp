@@ -224,7 +224,7 @@ std::string refused(const Changes& changes, double delivers = kQ0) {
 TEST(Svsmo1, AnOperatingPointBeyondItsLimitsIsRefused) {
   EXPECT_THAT(refused({}), IsEmpty());
   EXPECT_THAT(refused({}, 0.0), IsEmpty());  // in the middle of its range
-  EXPECT_THAT(refused(kQuick, 1.05), HasSubstr("B = 1.0092 pu, is outside Bmin to Bmax, -0.3 to 0.95 pu"));
+  EXPECT_THAT(refused(kQuick, 1.05), HasSubstr("B = 1.0092 pu, is outside Bmin = -0.3 pu to Bmax = 0.95 pu"));
   EXPECT_THAT(refused({{"OV1", 1.01}}), HasSubstr("its protection acts at V = 1.0200 pu"));
 }
 

@@ -237,7 +237,7 @@ TEST(DiagnosisReportTest, PageShowsTheUserModelsOfTheJson) {
   const std::string html = diagnosis_html(example().model, d, {});
   const auto section = html.find("User-defined model");
   ASSERT_NE(section, std::string::npos);
-  EXPECT_THAT(html, HasSubstr("7 model structures were ranked"));
+  EXPECT_THAT(html, HasSubstr("7 model structures (proportional"));
   EXPECT_THAT(html, HasSubstr("Found: -20 * V &lt; 0.5."));
   EXPECT_THAT(html, HasSubstr("inferred field voltage"));
   const auto rows = table_after(html.substr(section), "explained share of the inferred input");

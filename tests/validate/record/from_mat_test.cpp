@@ -116,8 +116,16 @@ TEST_P(RecordMatTest, NamesWithoutUnitsAreMapped) {
                              {"f", "fbus [Hz]"},
                              {"P", "Pgen [MW]"},
                              {"Q", "Qgen [Mvar]"}}});
-  expect_record(
-      {.columns = {{"t", "#1"}, {"V", "#2 [kV]"}, {"f", "#3 [Hz]"}, {"P", "#4 [MW]"}, {"Q", "#5 [Mvar]"}}});
+  // HDF5 sorts the variables by name.
+  const bool sorted = GetParam() == MAT_FT_MAT73;
+  const auto number = [&](int written, int by_name) {
+    return fmt::format("#{}", sorted ? by_name : written);
+  };
+  expect_record({.columns = {{"t", number(1, 4)},
+                             {"V", number(2, 3) + " [kV]"},
+                             {"f", number(3, 5) + " [Hz]"},
+                             {"P", number(4, 1) + " [MW]"},
+                             {"Q", number(5, 2) + " [Mvar]"}}});
   EXPECT_THAT(complaints({.columns = {{"t", "watch [s]"}}}),
               ElementsAre(AllOf(HasSubstr("no time vector 'watch [s]'"), HasSubstr("clock (90x1)"))));
 }
