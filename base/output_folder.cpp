@@ -78,8 +78,10 @@ OutputFolder::OutputFolder(fs::path folder, std::string command, const std::vect
 }
 
 OutputFolder::~OutputFolder() {
-  if (lock_) lock_->withdraw(true);
   std::error_code none;
+  if (!finished_)
+    for (const std::string& name : written_) fs::remove(folder_ / name, none);
+  if (lock_) lock_->withdraw(true);
   if (created_ && fs::is_empty(folder_, none)) fs::remove(folder_, none);
 }
 
@@ -106,6 +108,7 @@ void OutputFolder::finish(Earlier earlier) {
   for (const std::string& name : written_)
     if (fs::is_regular_file(folder_ / name, none)) list += hash_of_file(folder_ / name) + " " + name + "\n";
   write_text(list_file(folder_, command_), list);
+  finished_ = true;
 }
 
 }  // namespace swingbank

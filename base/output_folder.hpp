@@ -21,7 +21,8 @@ class OutputFolder {
   /// the folder.
   OutputFolder(std::filesystem::path folder, std::string command, const std::vector<std::string>& names,
                const std::vector<Output>& others = {});
-  /// Removes the lock file, and the folder if the constructor created it and it is empty.
+  /// Removes the lock file, the results of a run that did not finish, and the folder if the constructor
+  /// created it and it is empty.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -42,7 +43,7 @@ class OutputFolder {
   std::string command_;
   std::map<std::string, std::string> earlier_;  ///< hashes of an earlier run's files, by name
   std::vector<std::string> written_;
-  bool created_ = false;
+  bool created_ = false, finished_ = false;
   std::optional<RunLock> lock_;
 };
 

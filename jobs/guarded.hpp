@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 #include <string>
@@ -29,12 +33,16 @@ inline std::string problems_text(const InputError& error) {
   return text;
 }
 
-/// Runs `action` and returns its exit code. Prints an exception as an error message and returns 1. Returns 2
-/// if a stop signal ended the action before any result.
+/// Runs `action` and returns its exit code. Prints an exception as an error message and returns 1, as if
+/// standard output cannot be written. Returns 2 if a stop signal ended the action before any result.
 template <class F>
 int guarded(const std::string& command, F action) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit of a file's size then fails with a message
   try {
-    return action();
+    const int code = action();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    throw InputError({"cannot write the result", "standard output", std::strerror(errno),
+                      "free space, or redirect it elsewhere"});
   } catch (const Interrupted&) {
     fmt::print(stderr, "swingbank {}: stopped by a signal before the first result; nothing was written\n",
                command);

@@ -479,7 +479,8 @@ int run(CommandLine& line, int argc, char** argv) {
            "reference: IDA on the unreduced equations; batch: the vectorised (SIMD) solver used by generate")
       .one_of({"reference", "batch"})
       .shows_default();
-  line.add("--tolerance", o.tolerance, "relative error per step (reference 1e-8, batch 1e-6)");
+  line.add("--tolerance", o.tolerance, "relative error per step (reference 1e-8, batch 1e-6)")
+      .between(1e-14, 0.01);
   line.example(
       "swingbank simulate --raw grid.raw --dyr grid.dyr --fault 16:1.0:1.1 --t-end 10 --out run.csv");
   if (!line.parse(argc, argv)) return line.end();

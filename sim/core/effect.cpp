@@ -19,8 +19,7 @@ std::string slot_conflict(const Effect& source, const Effect& control) {
   if (!is_control(control.slot) || control.slot == Slot::setpoint) return {};
   if (is_of_converter(control.slot) == source.converter) {
     if (!source.converter || source.takes_commands) return {};
-    return std::string(source.name) + " takes no commands of a " + std::string(slot_name(control.slot)) +
-           ": its equations contain the control";
+    return std::string(source.name) + " takes no commands: its equations contain the control";
   }
   return std::string(slot_name(control.slot)) + " belongs to a " +
          (source.converter ? "synchronous machine" : "converter") + ", but " + std::string(source.name) +

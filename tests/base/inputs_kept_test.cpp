@@ -114,6 +114,14 @@ TEST_F(OutputFolderTest, RemovesResultsOfAnEarlierRunOnly) {
                                                        "playback-mine.csv"}));
 }
 
+TEST_F(OutputFolderTest, RemovesResultsOfAnUnfinishedRun) {
+  {
+    OutputFolder results("out", "compare", {"compare.json", "playback.csv"});
+    write_text(results.file("playback.csv"), "half");
+  }
+  EXPECT_FALSE(fs::exists("out"));
+}
+
 TEST_F(OutputFolderTest, RefusesAnInputThatIsAStaleResult) {
   {
     OutputFolder results("out", "compare", {"playback-a.csv"});

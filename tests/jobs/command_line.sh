@@ -75,3 +75,13 @@ first=$(sed -n '/^Validate a plant:/,/^$/p' "$work/help" | awk '/^  / {print $1}
 for command in $(internal_commands); do
   ! grep -q "^  $command " "$work/help" || fail "the internal command $command is listed"
 done
+
+# a result that cannot be written to standard output
+for command in "effects" "export --model $SWINGBANK_SOURCE/configs/plants/ieee14_bus2.toml"; do
+  code=0
+  # shellcheck disable=SC2086 # words of the command
+  "$swingbank" $command >/dev/full 2>"$work/stderr" || code=$?
+  ((code == 1)) || fail "$command: exit code $code with a full disk"
+  grep -q 'cannot write the result at standard output (No space left on device): free space' "$work/stderr" ||
+    fail "$command says: $(cat "$work/stderr")"
+done

@@ -106,13 +106,16 @@ class Data {
 
   void lines() {
     int number = 0;
+    const bool ended = dat_.empty() || dat_.find_last_of("\r\n\x1a") == dat_.size() - 1;
     while (!dat_.empty()) {
       const auto fields = comtrade_fields(take_line(dat_));
       ++number;
       if (fields.size() == 1 && fields[0].empty()) continue;
       if (is_surplus()) continue;
       const std::size_t wanted = 2 + out_.channels.size() + static_cast<std::size_t>(c_.status);
-      if (fields.size() < wanted && dat_.find_first_not_of(" \t\r\n\x1a") == std::string_view::npos) {
+      const bool last = dat_.find_first_not_of(" \t\r\n\x1a") == std::string_view::npos;
+      // Without a line end, the last number may be cut off.
+      if (last && (fields.size() < wanted || !ended)) {
         note_cut(fmt::format("{}:{}", out_.file, number));
         return;
       }

@@ -22,7 +22,11 @@ namespace {
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string name, const RecordBase& base, const ReadOptions& options)
-      : text_(text), name_(std::move(name)), base_(base), options_(options) {}
+      : text_(text),
+        ends_with_line_(text.ends_with('\n') || text.ends_with('\r')),
+        name_(std::move(name)),
+        base_(base),
+        options_(options) {}
 
   Record read() {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // byte order mark of spreadsheet programs
@@ -250,9 +254,11 @@ class CsvReader {
     lines_.push_back(number_);
     if (cells_.size() == width_ + 1 && cells_.back().empty()) cells_.pop_back();  // separator at the end
     const bool ragged = cells_.size() != width_;
-    if (ragged && cells_.size() < width_ && ends()) {
-      raw.about.notes.push_back(
-          fmt::format("The last line ({}:{}) is truncated and was ignored.", name_, number_));
+    // Without a line end, the last number may be cut off.
+    if ((ragged && cells_.size() < width_ && ends()) || (text_.empty() && !ends_with_line_)) {
+      raw.about.notes.push_back(fmt::format(
+          "The last line ({}:{}) is {} and was ignored.", name_, number_,
+          ragged ? "truncated" : "without a line end, so that its last number may be truncated,"));
       lines_.pop_back();
       return;
     }
@@ -383,6 +389,7 @@ class CsvReader {
   }
 
   std::string_view text_;
+  bool ends_with_line_;
   std::string name_;
   RecordBase base_;
   ReadOptions options_;

@@ -140,6 +140,18 @@ TEST(RecordCheckTest, ActivePowerInGigawattsIsRefusedWhereItSteps) {
   }
 }
 
+TEST(RecordCheckTest, ImpossibleFrameIsRefused) {
+  const record::Record sound = example(1);
+  for (const auto& [V, P] : {std::pair{999.0, sound.P[300]}, {0.0, sound.P[300]}, {sound.V[300], 60.0}}) {
+    record::Record r = sound;
+    r.V[300] = V;
+    r.P[300] = P;
+    const auto findings = check_record(r, {100, 60});
+    EXPECT_TRUE(refused(findings, "impossible_frame")) << V << findings_text(findings);
+  }
+  EXPECT_FALSE(refused(check_record(sound, {100, 60}), "impossible_frame"));
+}
+
 TEST(RecordCheckTest, InterpolatesLostSamplesWrittenAsZeros) {
   for (int i = 1; i <= 4; ++i) {
     Written w;

@@ -328,6 +328,12 @@ TEST(StampTest, AcceptsTruncatedLastLine) {
   EXPECT_EQ(r.samples(), 90);
   EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("r.csv:92"), HasSubstr("is truncated"))));
 }
+TEST(StampTest, IgnoresALastLineWithoutLineEnd) {
+  const auto text = table(kHeader, 90, [](int k) { return row(k, k / 30.0); });
+  const Record r = parse_record(text.substr(0, text.size() - 2), "r.csv", kTestBase);  // "0.1" becomes "0."
+  EXPECT_EQ(r.samples(), 89);
+  EXPECT_THAT(r.notes, ElementsAre(AllOf(HasSubstr("r.csv:91"), HasSubstr("without a line end"))));
+}
 TEST(StampTest, AcceptsRepeatedRows) {
   const auto text = table(kHeader, 90, [](int k) {
     return k == 40 ? row(k, k / 30.0) + "\n" + row(k, k / 30.0) : row(k, k / 30.0);

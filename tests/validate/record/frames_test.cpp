@@ -136,6 +136,7 @@ TEST(NumberTest, ThousandsSeparatorsInQuotes) {
   };
   expect_values(
       read("t_s,V_V,theta_rad,P_kW,Q_kvar\n", "{:.7f},\"140,760.0\",0.1,\"80,000.00\",\"20,000.0\"\n"));
+  expect_values(read("t_s,V_V,theta_rad,P_GW,Q_Gvar\n", "{:.7f},140760,0.1,0.08,0.02\n"));
   expect_values(read("t_s,V_V,theta_rad,P_W,Q_var\n", "{:.7f},140760,0.1,\"80,000,000\",\"20,000,000\"\n"));
   std::string all = "t_s;V_V;theta_rad;P_kW;Q_kvar\n";
   for (int k = 0; k < 90; ++k)

@@ -35,9 +35,11 @@ constexpr struct {
     {Unit::degree, "deg degs degree degrees grad °"},
     {Unit::hertz, "hz hertz"},
     {Unit::millihertz, "mhz millihertz"},
+    {Unit::gigawatt, "gw gwatt gwatts gigawatt gigawatts"},
     {Unit::megawatt, "mw mwatt mwatts megawatt megawatts"},
     {Unit::kilowatt, "kw kwatt kwatts kilowatt kilowatts"},
     {Unit::watt, "w watt watts"},
+    {Unit::gigavar, "gvar gvars gigavar gigavars"},
     {Unit::megavar, "mvar mvars megavar megavars"},
     {Unit::kilovar, "kvar kvars kilovar kilovars"},
     {Unit::var, "var vars"},
@@ -74,13 +76,15 @@ bool fits(Quantity q, Unit u) {
     case Quantity::f:
       return u == Unit::pu || u == Unit::hertz || u == Unit::millihertz;
     case Quantity::Q:
-      return u == Unit::pu || u == Unit::megavar || u == Unit::kilovar || u == Unit::var;
+      return u == Unit::pu || u == Unit::gigavar || u == Unit::megavar || u == Unit::kilovar ||
+             u == Unit::var;
     case Quantity::I:
       return u == Unit::pu || u == Unit::kiloampere || u == Unit::ampere;
     case Quantity::P:
     case Quantity::Pm:
     case Quantity::Pref:
-      return u == Unit::pu || u == Unit::megawatt || u == Unit::kilowatt || u == Unit::watt;
+      return u == Unit::pu || u == Unit::gigawatt || u == Unit::megawatt || u == Unit::kilowatt ||
+             u == Unit::watt;
     case Quantity::Efd:
       return u == Unit::pu || u == Unit::volt || u == Unit::kilovolt;
     case Quantity::Ifd:
@@ -232,6 +236,9 @@ double to_record_units(const ColumnMeaning& column, double v, const RecordBase& 
       return v / base.frequency - (column.deviation ? 0 : 1);
     case Unit::millihertz:
       return v * 1e-3 / base.frequency - (column.deviation ? 0 : 1);
+    case Unit::gigawatt:
+    case Unit::gigavar:
+      return v * 1e3 / base.mva;
     case Unit::megawatt:
     case Unit::megavar:
       return v / base.mva;
