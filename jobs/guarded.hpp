@@ -33,6 +33,13 @@ inline std::string problems_text(const InputError& error) {
   return text;
 }
 
+/// Returns the message of a failed write to standard output; errno must hold its reason.
+inline std::string unwritable_output() {
+  return Problem{"cannot write the result", "standard output", std::strerror(errno),
+                 "free space, or redirect it elsewhere"}
+      .sentence();
+}
+
 /// Runs `action` and returns its exit code. Prints an exception as an error message and returns 1, as if
 /// standard output cannot be written. Returns 2 if a stop signal ended the action before any result.
 template <class F>
@@ -41,8 +48,7 @@ int guarded(const std::string& command, F action) {
   try {
     const int code = action();
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-    throw InputError({"cannot write the result", "standard output", std::strerror(errno),
-                      "free space, or redirect it elsewhere"});
+    fmt::print(stderr, "{}\n", unwritable_output());
   } catch (const Interrupted&) {
     fmt::print(stderr, "swingbank {}: stopped by a signal before the first result; nothing was written\n",
                command);
@@ -56,7 +62,10 @@ int guarded(const std::string& command, F action) {
         "shorter or fewer records, or lower rates\n",
         command);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "swingbank {}: {}\n", command, error.what());
+    if (std::ferror(stdout) != 0)
+      fmt::print(stderr, "{}\n", unwritable_output());
+    else
+      fmt::print(stderr, "swingbank {}: {}\n", command, error.what());
   }
   return 1;
 }

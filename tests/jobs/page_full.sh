@@ -21,6 +21,7 @@ assert sorted(hashes) == sorted(sys.argv[2:]), hashes
 command = next(row["value"] for row in rows if row["what"] == "command")
 assert " --by 'A. Engineer' " in command, command  # as a shell reads it
 PYTHON
+rm -r "$work/out"
 calibrate --out "$work/out" >/dev/null 2>&1
 for words in 'Glossary' '95 % interval' 'calibrated' 'submitted' 'Error map' 'SHA-256'; do
   grep -qF -- "$words" "$work/out/report.html" || fail "'$words' is not on the page of calibrate"
@@ -67,7 +68,7 @@ if command -v chromium >/dev/null; then
   gives 3 '^Fit for purpose: no' compare --model "$bent" --pdf "$work/page #1.pdf" --quiet
   [[ $(head -c 5 "$work/page #1.pdf") == %PDF- && ! -s $work/notes ]] || fail "no PDF, or --quiet printed: $(cat "$work/notes")"
 fi
-python3 - "$swingbank" calibrate --model "$work/right.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/out" >"$work/tty" <<'PYTHON'
+python3 - "$swingbank" calibrate --model "$work/right.toml" --records "$one" --power-only --draws 0 --starts 0 --out "$work/tty-out" >"$work/tty" <<'PYTHON'
 import pty, sys
 pty.spawn(sys.argv[1:])
 PYTHON

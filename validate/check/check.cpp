@@ -379,11 +379,11 @@ class Check : Findings {
   /// Refuses a record with a few frames in which voltage or current cannot occur at a plant. A wrong unit or
   /// base affects all frames and is reported by the other checks.
   void frames() {
-    constexpr double kHighestVoltage = 3, kLargestCurrent = 30, kNoise = 0.2;  // pu of the machine
+    constexpr double kImpossibleVoltage = 3, kImpossibleCurrent = 30, kPowerNoise = 0.2;  // pu of the machine
     std::size_t count = 0, first = 0;
     for (std::size_t k = 0; k < r_.t.size(); ++k) {
       const double S = std::hypot(r_.P[k], r_.Q[k]) * machine_per_record();
-      if (r_.V[k] <= kHighestVoltage && S <= kLargestCurrent * r_.V[k] + kNoise) continue;
+      if (r_.V[k] <= kImpossibleVoltage && S <= kImpossibleCurrent * r_.V[k] + kPowerNoise) continue;
       if (count++ == 0) first = k;
     }
     if (count == 0 || count > r_.t.size() / 20) return;
