@@ -333,7 +333,12 @@ std::vector<std::string> Config::table_names(const std::string& key, const Range
 
 fs::path Config::file(const std::string& key, const Range& about) {
   const auto text = require<std::string>(key, about);
-  if (text.empty()) return {};
+  if (text.empty()) {
+    if (!trace_ && is_text(key))
+      problem(key, key + " = ''", "it must name a file",
+              "give a path; it is relative to the config's folder");
+    return {};
+  }
   const fs::path path = fs::path(text).is_absolute() ? fs::path(text) : name_.parent_path() / text;
   if (!fs::is_regular_file(path))
     problem(key, key + " = '" + text + "'", "there is no file " + path.lexically_normal().string(),

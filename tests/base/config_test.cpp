@@ -118,6 +118,16 @@ TEST(StrictConfig, EmptyTextIsRefusedWhereItIsNoChoice) {
   EXPECT_THAT(s, Not(HasSubstr("wrong = ''")));
 }
 
+TEST(StrictConfig, EmptyFileNameIsRefused) {
+  Config c("raw = ''\n", "c.toml");
+  c.file("raw");
+  c.file("dyr");
+  const std::string s = sentence_of(c);
+  EXPECT_THAT(s, HasSubstr("raw = '' at c.toml:1:7 (it must name a file)"));
+  EXPECT_THAT(s, HasSubstr("missing key dyr at c.toml"));
+  EXPECT_THAT(s, Not(HasSubstr("dyr = ''")));
+}
+
 TEST(StrictConfig, NotANumberIsRefused) {
   Config c("a = nan\nb = inf\n", "c.toml");
   c.require<double>("a");
