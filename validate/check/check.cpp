@@ -41,7 +41,8 @@ class Check : Findings {
     speed();
     if (r_.angle == record::AngleSource::measured) angle();
     power();
-    frames();
+    if (const auto doubt = frame_doubt(r_, plant_))
+      refuse("impossible_frame", doubt->what, doubt->why, doubt->remedy);
     quantised();
     if (plant_.synchronous && r_.angle == record::AngleSource::measured)
       steps();  // requires measured phasors
@@ -374,25 +375,6 @@ class Check : Findings {
                signals_.P.level * r_.base.mva, signals_.Q.level * r_.base.mva, 100 * share, plant_.mva),
            "the unit idled, or the headings name wrong units of P and Q",
            "check their units, and base_mva of the record and of the plant");
-  }
-
-  /// Refuses a record with a few frames in which voltage or current cannot occur at a plant. A wrong unit or
-  /// base affects all frames and is reported by the other checks.
-  void frames() {
-    constexpr double kImpossibleVoltage = 3, kImpossibleCurrent = 30, kPowerNoise = 0.2;  // pu of the machine
-    std::size_t count = 0, first = 0;
-    for (std::size_t k = 0; k < r_.t.size(); ++k) {
-      const double S = std::hypot(r_.P[k], r_.Q[k]) * machine_per_record();
-      if (r_.V[k] <= kImpossibleVoltage && S <= kImpossibleCurrent * r_.V[k] + kPowerNoise) continue;
-      if (count++ == 0) first = k;
-    }
-    if (count == 0 || count > r_.t.size() / 20) return;
-    refuse("impossible_frame",
-           fmt::format("V = {:.4g} pu with P = {:.4g} MW and Q = {:.4g} Mvar at t = {:.4g} s{}", r_.V[first],
-                       r_.P[first] * r_.base.mva, r_.Q[first] * r_.base.mva, r_.t[first],
-                       count > 1 ? fmt::format(", and {} more frames", count - 1) : ""),
-           "no plant has such a voltage or current; the frame may be damaged",
-           "empty its values, or end the record before it (--until)");
   }
 
   /// Warns of doubtful signs of P and Q, unless the steps of the phasors have already given a finding.

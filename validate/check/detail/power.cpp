@@ -94,6 +94,23 @@ std::optional<Doubt> dispatch_doubt(const record::Record& r, const PlantFacts& p
   return doubt;
 }
 
+std::optional<Doubt> frame_doubt(const record::Record& r, const PlantFacts& plant) {
+  constexpr double kImpossibleVoltage = 3, kImpossibleCurrent = 30, kPowerNoise = 0.2;  // pu of the machine
+  const double per_unit = plant.mva > 0 ? r.base.mva / plant.mva : 1;
+  std::size_t count = 0, first = 0;
+  for (std::size_t k = 0; k < r.t.size(); ++k) {
+    const double S = per_unit * std::hypot(r.P[k], r.Q[k]);
+    if (r.V[k] <= kImpossibleVoltage && S <= kImpossibleCurrent * r.V[k] + kPowerNoise) continue;
+    if (count++ == 0) first = k;
+  }
+  if (count == 0 || count > r.t.size() / 20) return std::nullopt;
+  return Doubt{fmt::format("V = {:.4g} pu with P = {:.4g} MW and Q = {:.4g} Mvar at t = {:.4g} s{}",
+                           r.V[first], r.P[first] * r.base.mva, r.Q[first] * r.base.mva, r.t[first],
+                           count > 1 ? fmt::format(", and {} more frames", count - 1) : ""),
+               "no plant has such a voltage or current; the frame may be damaged",
+               "empty its values, or end the record before it (--until)"};
+}
+
 namespace {
 
 /// Returns dQ/d|V| at the voltage steps [pu/pu], the smallest of three estimates: the step of Q over the same

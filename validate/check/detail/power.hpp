@@ -31,6 +31,10 @@ std::optional<Doubt> base_doubt(const record::Record& record, const PlantFacts& 
 /// the unit's output in its power-flow case by more than a usual redispatch.
 std::optional<Doubt> dispatch_doubt(const record::Record& record, const PlantFacts& plant, Complex power);
 
+/// Returns a doubt if a few frames have a voltage or current that cannot occur at a plant. A wrong unit or
+/// base affects all frames and causes none.
+std::optional<Doubt> frame_doubt(const record::Record& record, const PlantFacts& plant);
+
 /// Returns a doubt if the signs of P and Q of a synchronous machine seem reversed, or P and Q exchanged. Uses
 /// `P` before the event and the steps of |V| and Q, but no angle. `noise`: standard deviation of the noise of
 /// Q. `P` and `noise` are in pu on the record's base.
