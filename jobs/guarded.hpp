@@ -40,7 +40,7 @@ inline std::string unwritable_output() {
       .sentence();
 }
 
-/// Runs `action` and returns its exit code. Prints an exception as an error message and returns 1, as if
+/// Runs `action` and returns its exit code. Prints an exception as an error message and returns 1, also if
 /// standard output cannot be written. Returns 2 if a stop signal ended the action before any result.
 template <class F>
 int guarded(const std::string& command, F action) {

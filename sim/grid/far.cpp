@@ -92,8 +92,9 @@ std::vector<NotThere> look_far(const Grid& grid, plant::Plant& plant) {
 void look_far(Grid& grid) {
   for (plant::Plant& plant : grid.plants)
     for (const NotThere& missing : look_far(grid, plant))
-      grid.network.remark("controls whose remote bus or branch does not exist or is not in service measure at their plant",
-                          fmt::format("{} of generator {}: {}", missing.control, plant.name, missing.what));
+      grid.network.remark(
+          "controls whose remote bus or branch does not exist or is not in service measure at their plant",
+          fmt::format("{} of generator {}: {}", missing.control, plant.name, missing.what));
 }
 
 void measure_far(Grid& grid) {
