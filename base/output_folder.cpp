@@ -80,7 +80,8 @@ OutputFolder::OutputFolder(fs::path folder, std::string command, const std::vect
 OutputFolder::~OutputFolder() {
   std::error_code none;
   if (!finished_)
-    for (const std::string& name : written_) fs::remove(folder_ / name, none);
+    for (const std::string& name : written_)
+      if (!is_earlier(name)) fs::remove(folder_ / name, none);
   if (lock_) lock_->withdraw(true);
   if (created_ && fs::is_empty(folder_, none)) fs::remove(folder_, none);
 }
@@ -90,14 +91,19 @@ fs::path OutputFolder::file(const std::string& name) {
   return folder_ / name;
 }
 
+bool OutputFolder::is_earlier(const std::string& name) const {
+  const auto found = earlier_.find(name);
+  std::error_code none;
+  const fs::path file = folder_ / name;
+  return found != earlier_.end() && fs::is_regular_file(file, none) && hash_of_file(file) == found->second;
+}
+
 void OutputFolder::finish(Earlier earlier) {
   std::error_code none;
   std::string list;
   for (const auto& [name, hash] : earlier_) {
     const fs::path file = folder_ / name;
-    if (std::ranges::find(written_, name) != written_.end() || !fs::is_regular_file(file, none) ||
-        hash_of_file(file) != hash)
-      continue;
+    if (std::ranges::find(written_, name) != written_.end() || !is_earlier(name)) continue;
     if (earlier == Earlier::stay) {
       list += hash + " " + name + "\n";
       continue;

@@ -21,8 +21,8 @@ class OutputFolder {
   /// the folder.
   OutputFolder(std::filesystem::path folder, std::string command, const std::vector<std::string>& names,
                const std::vector<Output>& others = {});
-  /// Removes the lock file, the results of a run that did not finish, and the folder if the constructor
-  /// created it and it is empty.
+  /// Removes the lock file, the files that a run wrote without finishing, and the folder if the constructor
+  /// created it and it is empty. Results of an earlier run that were not yet overwritten stay.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -39,6 +39,9 @@ class OutputFolder {
   void finish(Earlier earlier = Earlier::removed);
 
  private:
+  /// Returns whether the folder holds this result of an earlier run unchanged.
+  [[nodiscard]] bool is_earlier(const std::string& name) const;
+
   std::filesystem::path folder_;
   std::string command_;
   std::map<std::string, std::string> earlier_;  ///< hashes of an earlier run's files, by name

@@ -120,6 +120,17 @@ TEST_F(OutputFolderTest, RemovesResultsOfAnUnfinishedRun) {
     write_text(results.file("playback.csv"), "half");
   }
   EXPECT_FALSE(fs::exists("out"));
+  {
+    OutputFolder results("out", "compare", {"compare.json", "playback.csv"});
+    for (const char* name : {"compare.json", "playback.csv"}) write_text(results.file(name), "earlier");
+    results.finish();
+  }
+  {
+    OutputFolder results("out", "compare", {"compare.json", "playback.csv"});
+    write_text(results.file("playback.csv"), "half");
+    results.file("compare.json");  // the disk is full before it is written
+  }
+  EXPECT_EQ(names_in("out"), (std::vector<std::string>{".swingbank-compare", "compare.json"}));
 }
 
 TEST_F(OutputFolderTest, RefusesAnInputThatIsAStaleResult) {

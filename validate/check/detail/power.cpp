@@ -95,7 +95,10 @@ std::optional<Doubt> dispatch_doubt(const record::Record& r, const PlantFacts& p
 }
 
 std::optional<Doubt> frame_doubt(const record::Record& r, const PlantFacts& plant) {
-  constexpr double kImpossibleVoltage = 3, kImpossibleCurrent = 30, kPowerNoise = 0.2;  // pu of the machine
+  // pu of the machine. The voltage is twice a high temporary overvoltage. The current is twice that of a
+  // bolted fault behind X" = 0.08 pu, the smallest reactance that the steps may show. At a step, V may be a
+  // sample apart from P and Q, which the last value permits.
+  constexpr double kImpossibleVoltage = 3, kImpossibleCurrent = 30, kPowerNoise = 0.2;
   const double per_unit = plant.mva > 0 ? r.base.mva / plant.mva : 1;
   std::size_t count = 0, first = 0;
   for (std::size_t k = 0; k < r.t.size(); ++k) {
