@@ -1,8 +1,8 @@
 #pragma once
-// Dual<T, N>: a value and its derivatives with respect to N parameters (forward-mode automatic
-// differentiation). T is double.
-#include <array>
+// Dual<N>: a value and its derivatives with respect to N parameters (forward-mode automatic differentiation).
 #include <cmath>
+
+#include "sim/core/pack.hpp"
 
 namespace swingbank::sim {
 
@@ -11,65 +11,43 @@ inline double select(bool m, double a, double b) { return m ? a : b; }
 
 /// Value with its gradient with respect to N parameters; operators apply the sum, product and quotient rules.
 /// Comparisons use the value alone.
-template <class T, int N>
+template <int N>
 struct Dual {
-  T a{};                 ///< value
-  std::array<T, N> d{};  ///< derivatives of the value with respect to the N parameters
+  Pack<N> d{0.0};  ///< derivatives of the value with respect to the N parameters
+  double a = 0.0;  ///< value
   Dual() = default;
   /// Constructs a constant: all derivatives are zero.
-  Dual(double x) : a(x) { d.fill(T(0.0)); }
+  Dual(double x) : a(x) {}
+  /// Constructs a value with its derivatives.
+  Dual(double x, Pack<N> derivatives) : d(derivatives), a(x) {}
 
   /// Returns the sum.
-  friend Dual operator+(const Dual& x, const Dual& y) {
-    Dual r;
-    r.a = x.a + y.a;
-    for (int i = 0; i < N; ++i) r.d[i] = x.d[i] + y.d[i];
-    return r;
-  }
+  friend Dual operator+(const Dual& x, const Dual& y) { return {x.a + y.a, x.d + y.d}; }
   /// Returns the difference.
-  friend Dual operator-(const Dual& x, const Dual& y) {
-    Dual r;
-    r.a = x.a - y.a;
-    for (int i = 0; i < N; ++i) r.d[i] = x.d[i] - y.d[i];
-    return r;
-  }
+  friend Dual operator-(const Dual& x, const Dual& y) { return {x.a - y.a, x.d - y.d}; }
   /// Returns the product.
-  friend Dual operator*(const Dual& x, const Dual& y) {
-    Dual r;
-    r.a = x.a * y.a;
-    for (int i = 0; i < N; ++i) r.d[i] = x.d[i] * y.a + x.a * y.d[i];
-    return r;
-  }
+  friend Dual operator*(const Dual& x, const Dual& y) { return {x.a * y.a, x.d * y.a + x.a * y.d}; }
   /// Returns the quotient.
   friend Dual operator/(const Dual& x, const Dual& y) {
-    Dual r;
-    const T inverse = T(1.0) / y.a;
-    r.a = x.a * inverse;
-    for (int i = 0; i < N; ++i) r.d[i] = (x.d[i] - r.a * y.d[i]) * inverse;
-    return r;
+    const double inverse = 1.0 / y.a, quotient = x.a * inverse;
+    return {quotient, (x.d - quotient * y.d) * inverse};
   }
   friend Dual operator-(const Dual& x) { return Dual(0.0) - x; }               ///< negation
-  friend auto operator<(const Dual& x, const Dual& y) { return x.a < y.a; }    ///< compares values
-  friend auto operator>(const Dual& x, const Dual& y) { return x.a > y.a; }    ///< compares values
-  friend auto operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }  ///< compares values
+  friend bool operator<(const Dual& x, const Dual& y) { return x.a < y.a; }    ///< compares values
+  friend bool operator>(const Dual& x, const Dual& y) { return x.a > y.a; }    ///< compares values
+  friend bool operator<=(const Dual& x, const Dual& y) { return x.a <= y.a; }  ///< compares values
 };
 
 /// Returns the dual of f(x) from f(x) and `derivative` = f'(x) by the chain rule.
-template <class T, int N>
-inline Dual<T, N> chain(const Dual<T, N>& x, const T& f, const T& derivative) {
-  Dual<T, N> r;
-  r.a = f;
-  for (int i = 0; i < N; ++i) r.d[i] = derivative * x.d[i];
-  return r;
+template <int N>
+inline Dual<N> chain(const Dual<N>& x, double f, double derivative) {
+  return {f, derivative * x.d};
 }
 
-/// Returns x where m holds, else y, with the derivatives.
-template <class M, class T, int N>
-inline Dual<T, N> select(const M& m, const Dual<T, N>& x, const Dual<T, N>& y) {
-  Dual<T, N> r;
-  r.a = select(m, x.a, y.a);
-  for (int i = 0; i < N; ++i) r.d[i] = select(m, x.d[i], y.d[i]);
-  return r;
+/// Returns x if m is true, else y, with the derivatives.
+template <int N>
+inline Dual<N> select(bool m, const Dual<N>& x, const Dual<N>& y) {
+  return m ? x : y;
 }
 
 }  // namespace swingbank::sim

@@ -12,9 +12,9 @@ namespace swingbank::sim {
 
 /// Number of sensitivity parameters of a dual number.
 constexpr int kSensitivities = 8;
-using D8 = Dual<double, kSensitivities>;  ///< double with sensitivities
-using P4 = Pack<4>;                       ///< four doubles
-using P8 = Pack<8>;                       ///< eight doubles
+using D8 = Dual<kSensitivities>;  ///< double with sensitivities
+using P4 = Pack<4>;               ///< four doubles
+using P8 = Pack<8>;               ///< eight doubles
 
 /// Scalar types for which all equations of an effect are instantiated. New types are added only here.
 /// FloatPack is separate (float_ops.hpp).
@@ -26,42 +26,35 @@ inline void sincos(double a, double& s, double& c) {
   c = std::cos(a);
 }
 /// Computes sine and cosine of a [rad], with derivatives.
-template <class T, int N>
-inline void sincos(const Dual<T, N>& a, Dual<T, N>& s, Dual<T, N>& c) {
-  T sa, ca;
+template <int N>
+inline void sincos(const Dual<N>& a, Dual<N>& s, Dual<N>& c) {
+  double sa, ca;
   sincos(a.a, sa, ca);
   s = chain(a, sa, ca);
-  c = chain(a, ca, T(0.0) - sa);
+  c = chain(a, ca, -sa);
 }
 /// Returns the square root, with derivatives.
-template <class T, int N>
-inline Dual<T, N> sqrt(const Dual<T, N>& a) {
-  using std::sqrt;
-  const T f = sqrt(a.a);
-  return chain(a, f, T(0.5) / f);
+template <int N>
+inline Dual<N> sqrt(const Dual<N>& a) {
+  const double f = std::sqrt(a.a);
+  return chain(a, f, 0.5 / f);
 }
 /// Returns the four-quadrant arctangent [rad], with derivatives.
-template <class T, int N>
-inline Dual<T, N> atan2(const Dual<T, N>& y, const Dual<T, N>& x) {
-  using std::atan2;
-  Dual<T, N> r;
-  r.a = atan2(y.a, x.a);
-  const T q = T(1.0) / (x.a * x.a + y.a * y.a);
-  for (int i = 0; i < N; ++i) r.d[i] = (x.a * y.d[i] - y.a * x.d[i]) * q;
-  return r;
+template <int N>
+inline Dual<N> atan2(const Dual<N>& y, const Dual<N>& x) {
+  const double q = 1.0 / (x.a * x.a + y.a * y.a);
+  return {std::atan2(y.a, x.a), (x.a * y.d - y.a * x.d) * q};
 }
 /// Returns the exponential, with derivatives.
-template <class T, int N>
-inline Dual<T, N> exp(const Dual<T, N>& a) {
-  using std::exp;
-  const T f = exp(a.a);
+template <int N>
+inline Dual<N> exp(const Dual<N>& a) {
+  const double f = std::exp(a.a);
   return chain(a, f, f);
 }
 /// Returns the natural logarithm, with derivatives.
-template <class T, int N>
-inline Dual<T, N> log(const Dual<T, N>& a) {
-  using std::log;
-  return chain(a, log(a.a), T(1.0) / a.a);
+template <int N>
+inline Dual<N> log(const Dual<N>& a) {
+  return chain(a, std::log(a.a), 1.0 / a.a);
 }
 /// Returns a^2.
 template <class T>
@@ -99,17 +92,17 @@ inline double value_of(const Packed<S, N>& a) {
   return a[0];
 }
 /// Returns the value without its derivatives.
-template <class T, int N>
-inline double value_of(const Dual<T, N>& a) {
-  return value_of(a.a);
+template <int N>
+inline double value_of(const Dual<N>& a) {
+  return a.a;
 }
 
 /// Whether any lane is above zero. Equations use it to skip a term that is zero in every lane.
 inline bool any_positive(double a) { return a > 0.0; }
 /// Whether the value of any lane is above zero.
-template <class T, int N>
-inline bool any_positive(const Dual<T, N>& a) {
-  return any_positive(a.a);
+template <int N>
+inline bool any_positive(const Dual<N>& a) {
+  return a.a > 0.0;
 }
 
 }  // namespace swingbank::sim

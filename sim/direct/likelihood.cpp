@@ -79,7 +79,7 @@ class Posterior {
   /// Returns J^T J of all residuals.
   [[nodiscard]] Eigen::MatrixXd information(const LinearisedResiduals& l) const {
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(unknowns(), unknowns());
-    matrix.selfadjointView<Eigen::Lower>().rankUpdate(l.jacobian.transpose());
+    matrix.selfadjointView<Eigen::Lower>().rankUpdate(l.jacobian().transpose());
     matrix.diagonal().head(static_cast<Index>(free_.size())).array() += 1;
     return matrix.selfadjointView<Eigen::Lower>();
   }
@@ -131,7 +131,7 @@ VectorXd second_derivative(const Posterior& posterior, const VectorXd& z, const 
   constexpr double kDifferenceShare = 0.1;
   const VectorXd near = posterior.residuals(z + kDifferenceShare * step, filtered, l);
   return 2 / (kDifferenceShare * kDifferenceShare) *
-         (near - l.value - kDifferenceShare * (l.jacobian * step));
+         (near - l.value - kDifferenceShare * (l.jacobian() * step));
 }
 
 /// Search within the limits: Levenberg-Marquardt steps with geodesic acceleration (Transtrum and Sethna,
@@ -153,7 +153,7 @@ MostProbable search(const Effect& machine, const NoisyRecord& record, const std:
     const Filtered filtered = posterior.filtered(z);
     const LinearisedResiduals l = posterior.linearised(z, filtered);
     const Eigen::MatrixXd information = posterior.information(l);
-    const VectorXd gradient = l.jacobian.transpose() * l.value + posterior.prior(z);
+    const VectorXd gradient = l.jacobian().transpose() * l.value + posterior.prior(z);
     const double here = l.value.squaredNorm() + posterior.prior(z).squaredNorm();
     found.p = posterior.parameters(z);
     found.cost = here + filtered.log_determinant;
@@ -167,7 +167,7 @@ MostProbable search(const Effect& machine, const NoisyRecord& record, const std:
       if (!(-(2 * gradient.dot(step) + step.dot(information * step)) > kSettledDecrease)) break;
       const VectorXd half_curvature = second_derivative(posterior, z, step, filtered, l) / 2;
       const VectorXd curved =
-          bounded_step(damped, gradient + l.jacobian.transpose() * half_curvature, z, low, high);
+          bounded_step(damped, gradient + l.jacobian().transpose() * half_curvature, z, low, high);
       if (curved.allFinite() && (curved - step).norm() < kMostCurved * step.norm()) step = curved;
       const double there =
           posterior.residuals(z + step, filtered, l).squaredNorm() + posterior.prior(z + step).squaredNorm();

@@ -53,7 +53,7 @@ class MachinePlayback {
   std::vector<double> fluxes_at_start(const std::vector<double>& p) const {
     Machine<double> m = machine(p);
     const double angle = m.x[0];
-    std::vector<double> x(m.x.begin() + kAngleAndSpeed, m.x.end());
+    std::vector<double> x = fluxes(m.x);
     for (std::size_t k = 0; k < first_; ++k) step(m, {k, k, k + 1}, record_.step, angle, x);
     return x;
   }
@@ -65,6 +65,10 @@ class MachinePlayback {
   [[nodiscard]] Machine<T> machine(const std::vector<T>& p) const {
     return {machine_,       record_.conventions,       p,
             T(whole_.V[0]), T(whole_.current0.real()), T(whole_.current0.imag())};
+  }
+  template <class T>
+  [[nodiscard]] std::vector<T> fluxes(const std::array<T, kMostFlowing>& of) const {
+    return {of.begin() + kAngleAndSpeed, of.begin() + machine_.states.size()};
   }
   [[nodiscard]] std::size_t compared() const { return whole_.Ifd.size() > 0 ? 3 : 2; }
   /// Evaluates the machine at a sample, with measured angle and speed and the given fluxes. `angle`: rotor
@@ -93,7 +97,7 @@ class MachinePlayback {
                              const std::vector<T>& flux) const {
     evaluate(m, at, angle, flux);
     m.derive();
-    return {m.dx.begin() + kAngleAndSpeed, m.dx.end()};
+    return fluxes(m.dx);
   }
   /// Performs one integration step over the samples first, middle, last.
   template <class T>

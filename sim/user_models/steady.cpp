@@ -89,12 +89,12 @@ class Search {
     Matrix j(rows_, unknowns_);
     for (Index from = 0; from < unknowns_; from += kSensitivities) {
       const Index to = std::min<Index>(from + kSensitivities, unknowns_);
-      for (Index i = from; i < to; ++i) unknown(i).d[static_cast<std::size_t>(i - from)] = 1.0;
+      for (Index i = from; i < to; ++i) unknown(i).d.set(static_cast<int>(i - from), 1.0);
       const auto f = residual_of<D8>(user_model_, c.data(), x.data(), s);
       for (Index row = 0; row < rows_; ++row)
         for (Index i = from; i < to; ++i)
-          j(row, i) = f[static_cast<std::size_t>(row)].d[static_cast<std::size_t>(i - from)];
-      for (Index i = from; i < to; ++i) unknown(i).d.fill(0.0);
+          j(row, i) = f[static_cast<std::size_t>(row)].d[static_cast<int>(i - from)];
+      for (Index i = from; i < to; ++i) unknown(i).d = 0.0;
     }
     return j;
   }
@@ -223,13 +223,13 @@ std::string steady(const Definition& user_model, const D8* p, D8* c, Signals<D8>
   now.t = D8(-1.0);
   const auto f = Search::residual_of<D8>(user_model, c, x, now);
   if (!f.empty() && states + user_model.searched.size() > 0)
-    for (std::size_t k = 0; k < kSensitivities; ++k) {
+    for (int k = 0; k < kSensitivities; ++k) {
       Vector by(static_cast<Index>(f.size()));
       for (std::size_t i = 0; i < f.size(); ++i) by[static_cast<Index>(i)] = f[i].d[k];
       const Vector u = search.follow(by);
-      for (std::size_t i = 0; i < states; ++i) x[i].d[k] = -u[static_cast<Index>(i)];
+      for (std::size_t i = 0; i < states; ++i) x[i].d.set(k, -u[static_cast<Index>(i)]);
       for (std::size_t i = 0; i < user_model.searched.size(); ++i)
-        c[user_model.searched[i]].d[k] = -u[static_cast<Index>(states + i)];
+        c[user_model.searched[i]].d.set(k, -u[static_cast<Index>(states + i)]);
     }
   put_out(user_model, c, x, s);
   return {};

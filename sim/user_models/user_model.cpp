@@ -22,58 +22,30 @@ void evaluate(const void* data, const T* c, const T* x, Signals<T>& s, T* dx) {
   out = user_model.replaces ? value : out + value;
 }
 
-/// Returns element `lane` of a SIMD batch.
-template <int N>
-double lane_of(const Pack<N>& v, int lane) {
-  return v[lane];
-}
-template <int N, int D>
-Dual<double, D> lane_of(const Dual<Pack<N>, D>& v, int lane) {
-  Dual<double, D> one;
-  one.a = v.a[lane];
-  for (std::size_t k = 0; k < D; ++k) one.d[k] = v.d[k][lane];
-  return one;
-}
-template <int N>
-void set_lane(Pack<N>& v, int lane, double a) {
-  v.set(lane, a);
-}
-template <int N, int D>
-void set_lane(Dual<Pack<N>, D>& v, int lane, const Dual<double, D>& one) {
-  v.a.set(lane, one.a);
-  for (std::size_t k = 0; k < D; ++k) v.d[k].set(lane, one.d[k]);
-}
-template <class T>
-constexpr int kLanesOf = 0;  ///< number of elements of a SIMD batch; 0: T is a single value
-template <int N>
-constexpr int kLanesOf<Pack<N>> = N;
-template <int N, int D>
-constexpr int kLanesOf<Dual<Pack<N>, D>> = N;
-
 template <class T>
 std::string steady_of(const void* data, const T* p, T* c, Signals<T>& s, T* x) {
+  return steady(of(data), p, c, s, x);
+}
+/// Computes each element of the SIMD batch by itself.
+template <int N>
+std::string steady_of(const void* data, const Pack<N>* p, Pack<N>* c, Signals<Pack<N>>& s, Pack<N>* x) {
   const Definition& user_model = of(data);
-  if constexpr (kLanesOf<T> == 0) {
-    return steady(user_model, p, c, s, x);
-  } else {  // for each element of the SIMD batch
-    using One = decltype(lane_of(*p, 0));
-    for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-      std::vector<One> one_p, one_c(static_cast<std::size_t>(user_model.code.coefficients), One(0.0)),
-          one_x(user_model.states.size(), One(0.0));
-      for (std::size_t i = 0; i < user_model.parameters.size(); ++i) one_p.push_back(lane_of(p[i], lane));
-      one_c[kFrequency] = lane_of(c[kFrequency], lane);
-      Signals<One> one_s;
-      for (std::size_t i = 0; i < kSignals.size(); ++i)
-        one_s.*kMembers<One>[i] = lane_of(s.*kMembers<T>[i], lane);
-      if (auto why = steady(user_model, one_p.data(), one_c.data(), one_s, one_x.data()); !why.empty())
-        return why;
-      for (std::size_t i = 0; i < one_c.size(); ++i) set_lane(c[i], lane, one_c[i]);
-      for (std::size_t i = 0; i < one_x.size(); ++i) set_lane(x[i], lane, one_x[i]);
-      const auto out = static_cast<std::size_t>(user_model.output);
-      set_lane(s.*kMembers<T>[out], lane, one_s.*kMembers<One>[out]);
-    }
-    return {};
+  for (int lane = 0; lane < N; ++lane) {
+    std::vector<double> one_p, one_c(static_cast<std::size_t>(user_model.code.coefficients)),
+        one_x(user_model.states.size());
+    for (std::size_t i = 0; i < user_model.parameters.size(); ++i) one_p.push_back(p[i][lane]);
+    one_c[kFrequency] = c[kFrequency][lane];
+    Signals<double> one_s;
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+      one_s.*kMembers<double>[i] = (s.*kMembers<Pack<N>>[i])[lane];
+    if (auto why = steady(user_model, one_p.data(), one_c.data(), one_s, one_x.data()); !why.empty())
+      return why;
+    for (std::size_t i = 0; i < one_c.size(); ++i) c[i].set(lane, one_c[i]);
+    for (std::size_t i = 0; i < one_x.size(); ++i) x[i].set(lane, one_x[i]);
+    const auto out = static_cast<std::size_t>(user_model.output);
+    (s.*kMembers<Pack<N>>[out]).set(lane, one_s.*kMembers<double>[out]);
   }
+  return {};
 }
 
 template <class T>
@@ -82,7 +54,9 @@ Ops<T> ops() {
   o.prepare =
       +[](const T*, const Conventions& conventions, T* c) { c[kFrequency] = T(conventions.frequency); };
   o.control.evaluate = &evaluate<T>;
-  o.control.steady = &steady_of<T>;
+  o.control.steady = [](const void* data, const T* p, T* c, Signals<T>& s, T* x) {
+    return steady_of(data, p, c, s, x);
+  };
   return o;
 }
 template <class... T>

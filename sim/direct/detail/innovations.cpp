@@ -2,159 +2,150 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <map>
 
 namespace swingbank::sim::direct {
 namespace {
 
 using OutputMatrix = Eigen::Matrix<double, kOutputs, kOutputs>;
-using StateVector = Eigen::Matrix<double, kMostFlowing, 1>;
-using StateMatrix = Eigen::Matrix<double, kMostFlowing, kMostFlowing>;
-using FromInputs = Eigen::Matrix<double, kMostFlowing, kInputs>;
+/// States of the machine and noise of the played-in voltage, which is constant between two samples.
+constexpr int kExtended = kSensitivities;
+constexpr int kFlowing = static_cast<int>(kMostFlowing);
+using ExtendedVector = Eigen::Matrix<double, kExtended, 1>;
+using ExtendedMatrix = Eigen::Matrix<double, kExtended, kExtended, Eigen::RowMajor>;
+using OutputRows = Eigen::Matrix<double, kOutputs, kExtended, Eigen::RowMajor>;
+using StateVector = Eigen::Matrix<double, kFlowing, 1>;
+using StateMatrix = Eigen::Matrix<double, kFlowing, kFlowing, Eigen::RowMajor>;
 
-/// Derivatives of the machine's equations at one time: of dx/dt and of the outputs y, with respect to the
-/// states and the played-in voltage.
-struct InputDerivatives {
-  StateMatrix A;
-  FromInputs B;
-  Eigen::Matrix<double, kOutputs, kMostFlowing> C;
-  Eigen::Matrix<double, kOutputs, kInputs> D;
+/// Derivatives of the machine's equations at one time with respect to the extended states.
+struct ExtendedDerivatives {
+  ExtendedMatrix A = ExtendedMatrix::Zero();  ///< of dx/dt; zero for the noise
+  OutputRows C;                               ///< of the outputs y
   OutputVector y;
   States<double> derivative;  ///< dx/dt
 };
 
-/// Linear equations of a sample about the filter's state: y = C x + D n + v and, for the next
-/// sample, F x + G n. n: noise of the played-in voltage; v: noise of the outputs.
+/// Linear equations of a sample about the filter's state: y = C z + v and z' = F z, with the extended states
+/// z and the noise v of the outputs. z' at the next sample has a new noise of the voltage.
 struct Linear {
-  StateMatrix F = StateMatrix::Zero();
-  FromInputs G = FromInputs::Zero();
-  Eigen::Matrix<double, kOutputs, kMostFlowing> C;
-  Eigen::Matrix<double, kOutputs, kInputs> D;
+  ExtendedMatrix F;
+  OutputRows C;
   OutputVector y;
   States<double> next = {};
-  FromInputs half = FromInputs::Zero();      ///< effect of a sample's noise in the interval before it
-  StateMatrix unsure = StateMatrix::Zero();  ///< covariance due to a voltage step before the next sample
+  /// Effect of half of the noise on the states: the part of the interval before the sample.
+  Eigen::Matrix<double, kFlowing, kInputs> half;
 };
+
+double input_variance(const NoisyRecord& record) { return record.noise.phasor() * record.noise.phasor(); }
 
 class Linearised {
  public:
   Linearised(const Effect& machine, const NoisyRecord& record, const std::vector<double>& p,
              const std::array<double, kSteady>& steady)
       : record_(record),
-        states_(machine.states.size()),
         plain_(machine, record.conventions, p, steady),
         dual_(machine, record.conventions, {p.begin(), p.end()},
-              {steady[kP0], steady[kQ0], steady[kV0], steady[kTheta0]}) {}
+              {steady[kP0], steady[kQ0], steady[kV0], steady[kTheta0]}) {
+    dual_.differentiate(0, static_cast<int>(machine.states.size()), kFlowing);
+  }
 
   /// Returns the state at the first sample and its covariance.
   States<double> start(StateMatrix& P) {
     // The voltage at the event is extrapolated from two samples, so that its noise exceeds that of one
     // sample.
     constexpr double kExtrapolated = 1.5 * 1.5 + 0.5 * 0.5;
-    Linear l;
     States<double> x = plain_.start();
     const Segment s = first_segment(record_);
-    extend(l, x, derivatives(x, s.begin), s);
+    const auto G = extend(x, derivatives(x, s.begin), s).topRightCorner<kFlowing, kInputs>().eval();
     add(x, record_.at_first);
-    const double input = kExtrapolated * std::pow(record_.noise.phasor(), 2);
-    P = input * l.G * l.G.transpose();
+    P = kExtrapolated * input_variance(record_) * G * G.transpose();
     open(plain_.start(), record_.in[0], record_.at_event, kUnsure * record_.first_step, P);
     return x;
   }
-  /// Computes the equations of sample k into a default-initialised `l`.
+  /// Computes the equations of sample k.
   void at(std::size_t k, const States<double>& x, Linear& l) {
-    const InputDerivatives here = derivatives(x, record_.in[k]);
+    const ExtendedDerivatives here = derivatives(x, record_.in[k]);
     l.y = here.y;
     l.C = here.C;
-    l.D = here.D;
+    l.F.setZero();
     if (k + 1 >= record_.samples()) return;
     l.next = x;
     const Segments between = segments_behind(record_, k);
-    extend(l, l.next, here, between.part[0]);
+    l.F = extend(l.next, here, between.part[0]);
     if (between.count == 2) {
-      extend(l, l.next, derivatives(l.next, between.part[1].begin), between.part[1]);
+      l.F =
+          extend(l.next, derivatives(l.next, between.part[1].begin), between.part[1]).lazyProduct(l.F).eval();
       if (const auto leap = record_.behind_leap.find(k); leap != record_.behind_leap.end())
         add(l.next, leap->second);
-      unsure_step(x, k, l.unsure);
     }
-    halve(l);
+    // A sample's noise acts half in the interval before the sample and half in the interval after it. The
+    // state excludes the first half, which therefore enters y.
+    l.half = 0.5 * l.F.topRightCorner<kFlowing, kInputs>();
+    l.C.rightCols<kInputs>() += l.C.leftCols<kFlowing>() * l.half;
+    l.F.topRightCorner<kFlowing, kInputs>() = l.F.topLeftCorner<kFlowing, kFlowing>() * l.half + l.half;
+  }
+  /// Returns the covariance of the state behind a voltage step at an unknown time between sample k and the
+  /// next. A uniform distribution of this time has the variance T^2/12, T being the sampling interval. The
+  /// extrapolated voltages on both sides are uncertain as well.
+  StateMatrix unsure_step(std::size_t k, const States<double>& x) {
+    const Interval& i = record_.behind[k];
+    StateMatrix covariance = StateMatrix::Zero();
+    open(x, i.before, i.after, record_.step / std::sqrt(12.0), covariance);
+    open(x, i.before, record_.in[k], kUnsure * record_.step / 2, covariance);
+    open(x, i.after, record_.in[k + 1], kUnsure * record_.step / 2, covariance);
+    return covariance;
   }
 
  private:
   /// Relative uncertainty of the difference between an extrapolated voltage and the adjacent sample.
   static constexpr double kUnsure = 0.25;
 
-  InputDerivatives derivatives(const States<double>& x, const Inputs& u) {
-    States<D8> dual{};
-    for (std::size_t i = 0; i < states_; ++i) {
-      dual[i].a = x[i];
-      dual[i].d[i] = 1;
-    }
-    Voltage<D8> v = {D8(u[kV]), D8(u[kTheta])};
-    for (std::size_t i = 0; i < kInputs; ++i) v[i].d[kMostFlowing + i] = 1;
-    dual_.evaluate(dual, v);
+  ExtendedDerivatives derivatives(const States<double>& x, const Inputs& u) {
+    dual_.evaluate_at(x, u);
     const auto y = dual_.outputs();
     const auto f = dual_.derivative();
-    InputDerivatives s;
-    const auto split = [](const D8& value, auto states, auto inputs) {
-      for (std::size_t i = 0; i < kMostFlowing; ++i) states[static_cast<Eigen::Index>(i)] = value.d[i];
-      for (std::size_t i = 0; i < kInputs; ++i)
-        inputs[static_cast<Eigen::Index>(i)] = value.d[kMostFlowing + i];
-    };
-    for (Eigen::Index o = 0; o < kOutputs; ++o) {
+    ExtendedDerivatives s;
+    for (int o = 0; o < kOutputs; ++o) {
       s.y[o] = y[static_cast<std::size_t>(o)].a;
-      split(y[static_cast<std::size_t>(o)], s.C.row(o), s.D.row(o));
+      s.C.row(o) = gradient(y[static_cast<std::size_t>(o)]);
     }
-    for (std::size_t i = 0; i < kMostFlowing; ++i) {
-      s.derivative[i] = f[i].a;
-      split(f[i], s.A.row(static_cast<Eigen::Index>(i)), s.B.row(static_cast<Eigen::Index>(i)));
+    if (record_.outputs < kOutputs) s.C.row(kIfd).setZero();
+    for (int i = 0; i < kFlowing; ++i) {
+      s.derivative[static_cast<std::size_t>(i)] = f[static_cast<std::size_t>(i)].a;
+      s.A.row(i) = gradient(f[static_cast<std::size_t>(i)]);
     }
     return s;
   }
-  /// Integrates x over a segment, and extends F and G by it. The linear equations keep the derivatives of the
-  /// segment's beginning; their transition matrix is the series of the fourth-order method.
-  void extend(Linear& l, States<double>& x, const InputDerivatives& s, const Segment& over) {
-    const StateMatrix hA = over.length * s.A, square = hA * hA, cube = square * hA;
-    const StateMatrix mean = StateMatrix::Identity() + hA / 2 + square / 6 + cube / 24;
-    const StateMatrix F = StateMatrix::Identity() + hA * mean;
-    const FromInputs G = over.length * (mean * s.B);
-    l.G = (F * l.G + G).eval();
-    l.F = l.F.isZero(0) ? F : (F * l.F).eval();
+  /// Integrates x over a segment and returns the transition matrix of the extended states. The linear
+  /// equations keep the derivatives of the segment's beginning; their transition matrix is the series of the
+  /// fourth-order method.
+  ExtendedMatrix extend(States<double>& x, const ExtendedDerivatives& s, const Segment& over) {
+    const ExtendedMatrix hA = over.length * s.A, one = ExtendedMatrix::Identity();
+    ExtendedMatrix F = one + hA / 4;
+    for (int order = 3; order > 0; --order) F = (one + hA.lazyProduct(F) / order).eval();
     plain_.integrate(x, s.derivative, over);
-  }
-  /// A sample's noise acts half in the interval before the sample and half in the interval after it. The
-  /// state excludes the first half, which therefore enters y through D.
-  static void halve(Linear& l) {
-    l.half = 0.5 * l.G;
-    l.D += 0.5 * l.C * l.G;
-    l.G = (0.5 * (l.F * l.G + l.G)).eval();
+    return F;
   }
   /// Adds the covariance of the state if it is unknown whether the voltage was u or v during `h` [s].
   void open(const States<double>& x, const Inputs& u, const Inputs& v, double h, StateMatrix& covariance) {
     const auto a = plain_.derivative_at(x, u), b = plain_.derivative_at(x, v);
     StateVector moved;
-    for (std::size_t i = 0; i < kMostFlowing; ++i) moved[static_cast<Eigen::Index>(i)] = h * (a[i] - b[i]);
+    for (int i = 0; i < kFlowing; ++i)
+      moved[i] = h * (a[static_cast<std::size_t>(i)] - b[static_cast<std::size_t>(i)]);
     covariance += moved * moved.transpose();
-  }
-  /// Adds the covariance of a voltage step at an unknown time between two samples. A uniform distribution of
-  /// this time has the variance T^2/12, T being the sampling interval. The extrapolated voltages on both
-  /// sides are uncertain as well.
-  void unsure_step(const States<double>& x, std::size_t k, StateMatrix& covariance) {
-    const Interval& i = record_.behind[k];
-    open(x, i.before, i.after, record_.step / std::sqrt(12.0), covariance);
-    open(x, i.before, record_.in[k], kUnsure * record_.step / 2, covariance);
-    open(x, i.after, record_.in[k + 1], kUnsure * record_.step / 2, covariance);
   }
 
   const NoisyRecord& record_;
-  std::size_t states_;
   Played<double> plain_;
   Played<D8> dual_;  ///< derivatives with respect to the states and the voltage
 };
 
-/// Returns the variances of the noise of the compared outputs.
-OutputVector variances(const MeasurementNoise& noise, double Ifd) {
+/// Returns the variances of the noise of the outputs at field current Ifd. That of an Ifd without record does
+/// not matter.
+OutputVector variances(const NoisyRecord& record, double Ifd) {
+  const MeasurementNoise& noise = record.noise;
   OutputVector v;
-  v << noise.phasor(), noise.phasor(), noise.speed(), noise.field(Ifd);
+  v << noise.phasor(), noise.phasor(), noise.speed(), record.outputs < kOutputs ? 1 : noise.field(Ifd);
   return v.cwiseAbs2();
 }
 
@@ -171,18 +162,6 @@ OutputVector innovation(const NoisyRecord& record, std::size_t k, const Linear& 
   return e;
 }
 
-OutputMatrix covariance(const NoisyRecord& record, const Linear& l, const StateMatrix& P) {
-  const double input = record.noise.phasor() * record.noise.phasor();
-  OutputMatrix S = l.C * P * l.C.transpose() + input * l.D * l.D.transpose();
-  S.diagonal() += variances(record.noise, l.y[kIfd]);
-  if (record.outputs < kOutputs) {  // Ifd is not recorded: as if measured with infinite variance
-    S.row(kIfd).setZero();
-    S.col(kIfd).setZero();
-    S(kIfd, kIfd) = 1;
-  }
-  return S;
-}
-
 Correction correction(const StateVector& x) {
   Correction c;
   std::ranges::copy(x, c.begin());
@@ -190,23 +169,24 @@ Correction correction(const StateVector& x) {
 }
 
 /// Returns the record without its most probable noise, by a backward pass (disturbance smoother, de Jong).
+/// `unsure`: covariances of the states behind voltage steps.
 NoisyRecord without_noise(const NoisyRecord& record, const std::vector<Step>& steps,
-                          const std::vector<Gain>& gains, const StateMatrix& P0) {
+                          const std::vector<Gain>& gains, const StateMatrix& P0,
+                          const std::map<std::size_t, StateMatrix>& unsure) {
   NoisyRecord likely = record;
-  const double input = record.noise.phasor() * record.noise.phasor();
-  StateVector back = StateVector::Zero();
-  Eigen::Matrix<double, kInputs, 1> noise;
+  ExtendedVector back = ExtendedVector::Zero();
+  Eigen::Matrix<double, kInputs, 1> noise = Eigen::Matrix<double, kInputs, 1>::Zero();
   for (std::size_t k = steps.size(); k-- > 0;) {
     const auto& [l, weighed] = steps[k];
-    const auto& K = gains[k].onto_states;
-    if (k < record.behind.size() && record.behind[k].leaps)
-      likely.behind_leap[k] = correction(l.unsure * back);
-    const OutputVector own = weighed - K.transpose() * back;
-    noise = -input * (l.D.transpose() * own + l.G.transpose() * back);
+    if (const auto step = unsure.find(k); step != unsure.end())
+      likely.behind_leap[k] = correction(step->second * back.head<kFlowing>());
+    const OutputVector own = weighed - gains[k].onto_states.transpose() * back.head<kFlowing>();
+    back = (l.C.transpose().lazyProduct(own) + l.F.transpose().lazyProduct(back)).eval();
+    noise = -input_variance(record) * back.tail<kInputs>();
+    back.tail<kInputs>().setZero();  // the noise of the sample before is another one
     for (int c = 0; c < kInputs; ++c) likely.in[k][static_cast<std::size_t>(c)] -= noise[c];
-    back = (l.C.transpose() * own + l.F.transpose() * back).eval();
   }
-  likely.at_first = correction(P0 * back - steps.front().l.half * noise);
+  likely.at_first = correction(P0 * back.head<kFlowing>() - steps.front().l.half * noise);
   fill_intervals(likely);
   return likely;
 }
@@ -219,32 +199,37 @@ Filtered filter(const Effect& machine, const NoisyRecord& record, const std::vec
   f.gains.resize(record.samples());
   f.white.resize(record.samples());
   std::vector<Step> steps(record.samples());
+  std::map<std::size_t, StateMatrix> unsure;
   Linearised linearised(machine, record, p, steady);
-  const double input = record.noise.phasor() * record.noise.phasor();
   StateMatrix P0;
   States<double> x = linearised.start(P0);
-  StateMatrix P = P0;
+  ExtendedMatrix P = ExtendedMatrix::Zero();  // covariance of the extended states
+  P.topLeftCorner<kFlowing, kFlowing>() = P0;
   for (std::size_t k = 0; k < record.samples(); ++k) {
     auto& [l, weighed] = steps[k];
     linearised.at(k, x, l);
-    const OutputVector e = innovation(record, k, l);
-    const OutputMatrix S = covariance(record, l, P);
-    const Eigen::LLT<OutputMatrix> factor(S);
+    P.rightCols<kInputs>().setZero();
+    P.bottomRows<kInputs>().setZero();
+    P.diagonal().tail<kInputs>().setConstant(input_variance(record));
+    const OutputRows CP = l.C.lazyProduct(P);
+    OutputMatrix S = CP.lazyProduct(l.C.transpose());
+    S.diagonal() += variances(record, l.y[kIfd]);
+    const ExtendedMatrix transposed = l.F.transpose();
     Gain& gain = f.gains[k];
-    gain.whitening = factor.matrixL().solve(OutputMatrix::Identity());
-    gain.onto_states =
-        factor.solve((l.F * P * l.C.transpose() + input * l.G * l.D.transpose()).transpose()).transpose();
-    if (record.outputs < kOutputs) gain.onto_states.col(kIfd).setZero();
+    gain.whitening = S.llt().matrixL().solve(OutputMatrix::Identity());
+    const OutputRows white = gain.whitening.lazyProduct(CP.lazyProduct(transposed).eval());
+    gain.onto_states = white.leftCols<kFlowing>().transpose() * gain.whitening;
+    const OutputVector e = innovation(record, k, l);
     f.white[k] = gain.whitening * e;
     f.log_determinant -= 2 * gain.whitening.diagonal().array().log().sum();
     weighed = gain.whitening.transpose() * f.white[k];
-    P = l.F * P * l.F.transpose() + input * l.G * l.G.transpose() + l.unsure -
-        gain.onto_states * S * gain.onto_states.transpose();
-    P = (0.5 * (P + P.transpose())).eval();
+    P = (l.F.lazyProduct(P).eval().lazyProduct(transposed) - white.transpose().lazyProduct(white)).eval();
+    if (k < record.behind.size() && record.behind[k].leaps)
+      P.topLeftCorner<kFlowing, kFlowing>() += unsure[k] = linearised.unsure_step(k, x);
     x = l.next;
     add(x, gain.onto_states * e);
   }
-  f.likely = without_noise(record, steps, f.gains, P0);
+  f.likely = without_noise(record, steps, f.gains, P0, unsure);
   return f;
 }
 

@@ -42,10 +42,14 @@ struct ScaledParameter {
 /// residuals, then the whitened innovations. Unknowns: the parameters, then the operating point.
 struct LinearisedResiduals {
   Eigen::VectorXd value;
-  /// Residuals x unknowns.
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian;
+  /// Derivatives of the residuals. The unknowns are the first columns, and the others have no meaning.
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> columns;
+  Eigen::Index unknowns = 0;
   /// Response of the machine to the voltage without noise: outputs of each sample.
   std::vector<std::array<double, kOutputs>> response;
+
+  /// Returns the derivatives: residuals x unknowns.
+  [[nodiscard]] auto jacobian() const { return columns.leftCols(unknowns); }
 };
 LinearisedResiduals linearise(const Effect& machine, const NoisyRecord& record, const Filtered& filtered,
                               const std::vector<double>& p, const std::array<double, kSteady>& steady,

@@ -1,9 +1,11 @@
 #pragma once
 // Equations of a machine with played-in terminal voltage, evaluated at one time. Efd and mechanical torque
 // keep their values of the steady state before the event.
+#include <array>
 #include <vector>
 
 #include "sim/core/effect.hpp"
+#include "sim/direct/detail/noisy_record.hpp"
 
 namespace swingbank::sim::direct {
 
@@ -11,7 +13,10 @@ namespace swingbank::sim::direct {
 template <class T>
 struct PlaybackMachine {
   const Ops<T>& ops;
-  std::vector<T> c, x, scratch, dx;  ///< x: set before evaluate(); initially the steady state
+  std::vector<T> c, scratch;
+  /// States, to be set before evaluate(); initially the steady state. States that the machine does not have
+  /// are zero, as are their derivatives.
+  std::array<T, kMostFlowing> x{}, dx{};
   Signals<T> s;
   T r, xm;  ///< impedance between terminal and internal voltage [pu]
 
@@ -20,9 +25,7 @@ struct PlaybackMachine {
                   const T& Ir0, const T& Ii0)
       : ops(effect.get<T>()),
         c(static_cast<std::size_t>(effect.coefficients)),
-        x(effect.states.size()),
-        scratch(static_cast<std::size_t>(effect.scratch)),
-        dx(effect.states.size()) {
+        scratch(static_cast<std::size_t>(effect.scratch)) {
     ops.prepare(p.data(), conventions, c.data());
     ops.machine.source_impedance(p.data(), r, xm);
     s.Vr = V0;

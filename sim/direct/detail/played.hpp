@@ -19,6 +19,13 @@ using States = std::array<T, kMostFlowing>;
 template <class T>
 using Voltage = std::array<T, kInputs>;
 
+/// Returns the derivatives of a dual number as a row.
+inline auto gradient(const D8& x) {
+  Eigen::Matrix<double, 1, kSensitivities> row;
+  x.d.store(row.data());
+  return row;
+}
+
 /// Adds a correction of the states.
 inline void add(States<double>& x, const Correction& by) {
   for (std::size_t i = 0; i < kMostFlowing; ++i) x[i] += by[i];
@@ -50,7 +57,7 @@ class Played {
          const std::array<T, kSteady>& steady)
       : m_(machine, conventions, p, steady[kV0], steady[kP0] / steady[kV0],
            T(0.0) - steady[kQ0] / steady[kV0]) {
-    std::ranges::copy(m_.x, start_.begin());
+    start_ = m_.x;
     start_[0] = start_[0] + steady[kTheta0];
     evaluate(start_, {steady[kV0], steady[kTheta0]});
     Ifd0_ = m_.s.Ifd;
@@ -59,21 +66,39 @@ class Played {
   [[nodiscard]] const T& Ifd0() const { return Ifd0_; }  ///< field current of the steady state [pu]
   /// Computes the algebraic equations at states x and voltage u.
   void evaluate(const States<T>& x, const Voltage<T>& u) {
-    std::copy_n(x.begin(), m_.x.size(), m_.x.begin());
+    m_.x = x;
     m_.x[0] = x[0] - u[kTheta];
     m_.evaluate(u[kV]);
   }
-  /// Returns the compared signals; call after evaluate().
+  /// Differentiates with respect to the states: the derivatives with respect to state i are number
+  /// `first` + i of each dual number, where it exists. Those with respect to the voltage and its angle follow
+  /// from `inputs` on. Afterwards, use evaluate_at().
+  void differentiate(int first, int states, int inputs) {
+    const auto set = [](T& value, int at, double derivative) {
+      if (at >= 0 && at < kSensitivities) value.d.set(at, derivative);
+    };
+    m_.x.fill(T(0.0));
+    V_ = T(0.0);
+    for (int i = 0; i < states; ++i) set(m_.x[static_cast<std::size_t>(i)], first + i, 1);
+    set(V_, inputs + kV, 1);
+    set(m_.x[0], inputs + kTheta, -1);
+  }
+  /// Computes the algebraic equations at states x and voltage u, after differentiate().
+  void evaluate_at(const States<double>& x, const Inputs& u) {
+    for (std::size_t i = 0; i < kMostFlowing; ++i) m_.x[i].a = x[i];
+    m_.x[0].a -= u[kTheta];
+    V_.a = u[kV];
+    m_.evaluate(V_);
+  }
+  /// Returns the compared signals; call after evaluate() or evaluate_at().
   [[nodiscard]] std::array<T, kOutputs> outputs() const {
     const auto& s = m_.s;
     return {s.Vr * s.Ir, T(0.0) - s.Vr * s.Ii, s.speed, s.Ifd};
   }
-  /// Returns the derivatives of the states; call after evaluate().
+  /// Returns the derivatives of the states; call after evaluate() or evaluate_at().
   States<T> derivative() {
     m_.derive();
-    States<T> dx{};
-    std::ranges::copy(m_.dx, dx.begin());
-    return dx;
+    return m_.dx;
   }
   States<T> derivative_at(const States<T>& x, const Voltage<T>& u) {
     evaluate(x, u);
@@ -88,6 +113,7 @@ class Played {
 
  private:
   PlaybackMachine<T> m_;
+  T V_ = T(0.0);
   States<T> start_{};
   T Ifd0_;
 };

@@ -29,7 +29,7 @@ class DualCostFunction : public ceres::CostFunction {
       const auto r = own.template of<D8>(blocks[0], first);
       for (std::size_t i = 0; i < r.size(); ++i)
         for (int k = first; k < std::min(first + kSensitivities, width); ++k) {
-          const double derivative = r[i].d[static_cast<std::size_t>(k - first)];
+          const double derivative = r[i].d[k - first];
           jacobians[0][static_cast<std::ptrdiff_t>(i) * width + k] = derivative;
           finite = finite && std::isfinite(derivative);
         }
@@ -43,7 +43,7 @@ class DualCostFunction : public ceres::CostFunction {
   static T unknown(const double* z, std::ptrdiff_t k, double scale, std::ptrdiff_t first) {
     T x(z[k] * scale);
     if constexpr (!std::is_same_v<T, double>)
-      if (k >= first && k < first + kSensitivities) x.d[static_cast<std::size_t>(k - first)] = scale;
+      if (k >= first && k < first + kSensitivities) x.d.set(static_cast<int>(k - first), scale);
     return x;
   }
 };

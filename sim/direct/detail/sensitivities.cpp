@@ -1,6 +1,7 @@
 // Sensitivities of the whitened innovations. The equations are linearised at every sample by dual numbers,
 // and their variational equation is integrated between the samples with the same fourth-order method.
 #include <cmath>
+#include <utility>
 
 #include "sim/direct/detail/innovations.hpp"
 
@@ -9,105 +10,113 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kColumns = kMostUnknowns;
-using ByUnknowns = Eigen::Matrix<double, kMostFlowing, kColumns, Eigen::RowMajor>;
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using OutputsByUnknowns = Eigen::Matrix<double, kOutputs, kColumns, Eigen::RowMajor>;
+/// Derivatives of dx/dt and of the outputs y at one time, with respect to the states and the unknowns.
+/// `Columns`: number of unknowns and states, rounded up to a multiple of kSensitivities. E and Y are zero in
+/// the columns behind those of the unknowns.
+template <int Columns>
+struct Derivatives {
+  using States = Eigen::Matrix<double, kMostFlowing, Columns, Eigen::RowMajor>;
+  using Outputs = Eigen::Matrix<double, kOutputs, Columns, Eigen::RowMajor>;
 
-/// Derivatives of dx/dt and of the outputs y with respect to the states and the unknowns, at one time.
-struct UnknownDerivatives {
-  Eigen::Matrix<double, kMostFlowing, kMostFlowing> A = decltype(A)::Zero();
-  ByUnknowns E = ByUnknowns::Zero();
-  Eigen::Matrix<double, kOutputs, kMostFlowing> C = decltype(C)::Zero();
-  OutputsByUnknowns Y = OutputsByUnknowns::Zero();
+  Eigen::Matrix<double, kMostFlowing, kMostFlowing> A;  ///< of dx/dt with respect to the states
+  States E;                                             ///< of dx/dt with respect to the unknowns
+  Eigen::Matrix<double, kOutputs, kMostFlowing> C;      ///< of y with respect to the states
+  Outputs Y;                                            ///< of y with respect to the unknowns
   std::array<double, kOutputs> y;
+  direct::States<double> derivative;  ///< dx/dt
 };
 
 /// Returns the sensitivities of the states at the end of a segment. a, b: derivatives at its beginning and
 /// end.
-ByUnknowns integrated(const ByUnknowns& S, const UnknownDerivatives& a, const UnknownDerivatives& b,
-                      double h) {
+template <class Derivatives>
+typename Derivatives::States integrated(const typename Derivatives::States& S, const Derivatives& a,
+                                        const Derivatives& b, double h) {
+  using States = typename Derivatives::States;
   const auto A = ((a.A + b.A) / 2).eval();
-  const ByUnknowns E = (a.E + b.E) / 2;
-  const ByUnknowns first = a.A.lazyProduct(S) + a.E;
-  const ByUnknowns second = A.lazyProduct((S + h / 2 * first).eval()) + E;
-  const ByUnknowns third = A.lazyProduct((S + h / 2 * second).eval()) + E;
-  const ByUnknowns fourth = b.A.lazyProduct((S + h * third).eval()) + b.E;
+  const States E = (a.E + b.E) / 2;
+  const States first = a.A.lazyProduct(S) + a.E;
+  const States second = A.lazyProduct((S + h / 2 * first).eval()) + E;
+  const States third = A.lazyProduct((S + h / 2 * second).eval()) + E;
+  const States fourth = b.A.lazyProduct((S + h * third).eval()) + b.E;
   return S + h / 6 * (first + 2 * (second + third) + fourth);
 }
 
 /// Machine in dual numbers. Columns of derivatives: the unknowns, then the states. Each dual number has
 /// kSensitivities of them.
+template <int Columns>
 class DualMachine {
  public:
+  using Derivatives = direct::Derivatives<Columns>;
+  using ByUnknowns = typename Derivatives::States;
+
   DualMachine(const Effect& machine, const Conventions& conventions, const std::vector<double>& p,
               const std::array<double, kSteady>& steady, std::span<const ScaledParameter> parameters)
       : unknowns_(static_cast<int>(parameters.size()) + kSteady),
         states_(static_cast<int>(machine.states.size())) {
-    for (int first = 0; first < unknowns_ + states_; first += kSensitivities) {
+    for (int first = 0; first < Columns; first += kSensitivities) {
       std::vector<D8> dual(p.begin(), p.end());
       std::array<D8, kSteady> point;
       std::ranges::copy(steady, point.begin());
       for (int lane = 0; lane < kSensitivities; ++lane) {
         const int column = first + lane, beyond = column - static_cast<int>(parameters.size());
-        const auto d = static_cast<std::size_t>(lane);
         if (beyond < 0) {
           const ScaledParameter& by = parameters[static_cast<std::size_t>(column)];
-          dual[static_cast<std::size_t>(by.index)].d[d] = by.scale;
+          dual[static_cast<std::size_t>(by.index)].d.set(lane, by.scale);
         } else if (beyond < kSteady) {
-          point[static_cast<std::size_t>(beyond)].d[d] = 1;
+          point[static_cast<std::size_t>(beyond)].d.set(lane, 1);
         }
       }
-      parts_.emplace_back(machine, conventions, dual, point);
+      parts_.emplace_back(machine, conventions, dual, point)
+          .differentiate(unknowns_ - first, states_, kSensitivities);
     }
   }
   /// Returns the sensitivities of the steady state.
   [[nodiscard]] ByUnknowns start() const {
-    ByUnknowns S = ByUnknowns::Zero();
-    for_columns([&](const Played<D8>& part, std::size_t lane, int column) {
-      for (Index i = 0; i < states_; ++i) S(i, column) = part.start()[static_cast<std::size_t>(i)].d[lane];
-    });
+    ByUnknowns S;
+    for (int part = 0; part < kDuals; ++part)
+      for (std::size_t i = 0; i < kMostFlowing; ++i)
+        block(S, static_cast<Index>(i), part) = gradient(parts_[static_cast<std::size_t>(part)].start()[i]);
     return S;
   }
   /// Returns the sensitivities of the field current of the steady state.
-  [[nodiscard]] Eigen::VectorXd Ifd0() const {
-    Eigen::VectorXd by = Eigen::VectorXd::Zero(unknowns_);
-    for_columns(
-        [&](const Played<D8>& part, std::size_t lane, int column) { by[column] = part.Ifd0().d[lane]; });
+  [[nodiscard]] Eigen::Matrix<double, 1, Columns> Ifd0() const {
+    Eigen::Matrix<double, 1, Columns> by;
+    for (int part = 0; part < kDuals; ++part)
+      block(by, 0, part) = gradient(parts_[static_cast<std::size_t>(part)].Ifd0());
     return by;
   }
-  void derivatives(const States<double>& x, const Inputs& u, UnknownDerivatives& s) {
-    const Voltage<D8> v = {D8(u[kV]), D8(u[kTheta])};
-    for (std::size_t part = 0; part < parts_.size(); ++part) {
-      const int first = static_cast<int>(part) * kSensitivities;
-      States<D8> dual{};
-      for (int i = 0; i < states_; ++i) {
-        dual[static_cast<std::size_t>(i)].a = x[static_cast<std::size_t>(i)];
-        const int lane = unknowns_ + i - first;
-        if (lane >= 0 && lane < kSensitivities)
-          dual[static_cast<std::size_t>(i)].d[static_cast<std::size_t>(lane)] = 1;
+  void derivatives(const States<double>& x, const Inputs& u, Derivatives& s) {
+    for (int part = 0; part < kDuals; ++part) {
+      Played<D8>& machine = parts_[static_cast<std::size_t>(part)];
+      machine.evaluate_at(x, u);
+      const auto y = machine.outputs();
+      const auto f = machine.derivative();
+      for (std::size_t o = 0; o < kOutputs; ++o) {
+        s.y[o] = y[o].a;
+        block(s.Y, static_cast<Index>(o), part) = gradient(y[o]);
       }
-      parts_[part].evaluate(dual, v);
-      const auto y = parts_[part].outputs();
-      const auto f = parts_[part].derivative();
-      for (std::size_t o = 0; o < kOutputs; ++o) s.y[o] = y[o].a;
-      const int own = std::clamp(unknowns_ - first, 0, kSensitivities);
-      const int all = std::min(unknowns_ + states_ - first, kSensitivities);
-      const auto split = [&](const D8& value, auto unknowns, auto states) {
-        for (int i = 0; i < own; ++i) unknowns[first + i] = value.d[static_cast<std::size_t>(i)];
-        for (int i = own; i < all; ++i) states[first + i - unknowns_] = value.d[static_cast<std::size_t>(i)];
-      };
-      for (Index o = 0; o < kOutputs; ++o) split(y[static_cast<std::size_t>(o)], s.Y.row(o), s.C.row(o));
-      for (Index i = 0; i < states_; ++i) split(f[static_cast<std::size_t>(i)], s.E.row(i), s.A.row(i));
+      for (std::size_t i = 0; i < kMostFlowing; ++i) {
+        s.derivative[i] = f[i].a;
+        block(s.E, static_cast<Index>(i), part) = gradient(f[i]);
+      }
     }
+    split(s.Y, s.C);
+    split(s.E, s.A);
   }
 
  private:
-  template <class Function>
-  void for_columns(const Function& of) const {
-    for (int column = 0; column < unknowns_; ++column)
-      of(parts_[static_cast<std::size_t>(column / kSensitivities)],
-         static_cast<std::size_t>(column % kSensitivities), column);
+  static constexpr int kDuals = Columns / kSensitivities;
+
+  template <class Matrix>
+  static auto block(Matrix& m, Index row, int part) {
+    return m.template block<1, kSensitivities>(row, part * kSensitivities);
+  }
+  /// Moves the derivatives with respect to the states out of the columns of the unknowns.
+  template <class All, class ByStates>
+  void split(All& all, ByStates& by_states) const {
+    by_states.setZero();
+    for (Index j = 0; j < states_; ++j)
+      for (Index i = 0; i < all.rows(); ++i) by_states(i, j) = std::exchange(all(i, unknowns_ + j), 0.0);
   }
 
   int unknowns_, states_;
@@ -152,60 +161,80 @@ std::size_t residual_count(const NoisyRecord& record) {
   return record.samples() * static_cast<std::size_t>(record.outputs) + steady_weights(record).size();
 }
 
-LinearisedResiduals linearise(const Effect& machine, const NoisyRecord& record, const Filtered& filtered,
-                              const std::vector<double>& p, const std::array<double, kSteady>& steady,
-                              std::span<const ScaledParameter> parameters) {
+namespace {
+
+template <int Columns>
+LinearisedResiduals linearise_in(const Effect& machine, const NoisyRecord& record, const Filtered& filtered,
+                                 const std::vector<double>& p, const std::array<double, kSteady>& steady,
+                                 std::span<const ScaledParameter> parameters) {
+  using Dual = DualMachine<Columns>;
   const NoisyRecord& r = filtered.likely;
-  DualMachine dual(machine, r.conventions, p, steady, parameters);
+  Dual dual(machine, r.conventions, p, steady, parameters);
   Played<double> plain(machine, r.conventions, p, steady);
   const auto n = static_cast<Index>(parameters.size()) + kSteady;
   const auto count = static_cast<Index>(residual_count(record));
   LinearisedResiduals l;
+  l.unknowns = n;
   l.value.resize(count);
   l.response.resize(r.samples());
-  RowMatrix jacobian = RowMatrix::Zero(count, n);
+  l.columns.resize(count, Columns);
   const std::vector<double> weights = steady_weights(record);
   Index row = static_cast<Index>(weights.size());
   l.value.head(row) = steady_residuals(record, weights, steady, plain.Ifd0());
-  for (Index i = 0; i < kSteady; ++i) jacobian(i, n - kSteady + i) = -weights[static_cast<std::size_t>(i)];
-  if (row > kSteady) jacobian.row(kSteady) = -weights.back() * dual.Ifd0();
+  l.columns.topRows(row).setZero();
+  for (Index i = 0; i < kSteady; ++i) l.columns(i, n - kSteady + i) = -weights[static_cast<std::size_t>(i)];
+  if (row > kSteady) l.columns.row(kSteady) = -weights.back() * dual.Ifd0();
 
   States<double> x = plain.start();
-  ByUnknowns S = dual.start();
+  typename Dual::ByUnknowns S = dual.start();
   // Derivatives at the beginning and the end of the segment.
-  UnknownDerivatives here, end;
+  std::array<typename Dual::Derivatives, 2> both;
+  auto *here = &both[0], *end = &both[1];
   const auto advance = [&](const Segment& s) {
-    plain.integrate(x, plain.derivative_at(x, s.begin), s);
-    dual.derivatives(x, s.end, end);
-    S = integrated(S, here, end, s.length);
+    plain.integrate(x, here->derivative, s);
+    dual.derivatives(x, s.end, *end);
+    S = integrated(S, *here, *end, s.length);
   };
   const Segment first = first_segment(r);
-  dual.derivatives(x, first.begin, here);
+  dual.derivatives(x, first.begin, *here);
   advance(first);
   add(x, r.at_first);
-  dual.derivatives(x, r.in[0], here);
+  dual.derivatives(x, r.in[0], *here);
   for (std::size_t k = 0; k < r.samples(); ++k, row += r.outputs) {
-    l.response[k] = here.y;
-    const OutputsByUnknowns change = here.C.lazyProduct(S) + here.Y;
-    const OutputsByUnknowns white = -filtered.gains[k].whitening.lazyProduct(change);
-    jacobian.middleRows(row, r.outputs) = white.topLeftCorner(r.outputs, n);
+    l.response[k] = here->y;
+    const typename Dual::Derivatives::Outputs change = here->C.lazyProduct(S) + here->Y;
+    l.columns.middleRows(row, r.outputs) =
+        -filtered.gains[k].whitening.topRows(r.outputs).lazyProduct(change);
     l.value.segment(row, r.outputs) = filtered.white[k].head(r.outputs);
     if (k + 1 == r.samples()) break;
     const Segments between = segments_behind(r, k);
     advance(between.part[0]);
     if (between.count == 2) {
-      dual.derivatives(x, between.part[1].begin, here);
+      dual.derivatives(x, between.part[1].begin, *here);
       advance(between.part[1]);
       if (const auto leap = r.behind_leap.find(k); leap != r.behind_leap.end()) {
         add(x, leap->second);
-        dual.derivatives(x, r.in[k + 1], end);
+        dual.derivatives(x, r.in[k + 1], *end);
       }
     }
     std::swap(here, end);
     S -= filtered.gains[k].onto_states.lazyProduct(change);
   }
-  l.jacobian = std::move(jacobian);
   return l;
+}
+
+}  // namespace
+
+LinearisedResiduals linearise(const Effect& machine, const NoisyRecord& record, const Filtered& filtered,
+                              const std::vector<double>& p, const std::array<double, kSteady>& steady,
+                              std::span<const ScaledParameter> parameters) {
+  // The number of columns is a constant of each instance, so that their loops have a fixed length.
+  const auto columns = parameters.size() + kSteady + machine.states.size();
+  const auto with = columns <= 8    ? linearise_in<8>
+                    : columns <= 16 ? linearise_in<16>
+                    : columns <= 24 ? linearise_in<24>
+                                    : linearise_in<32>;
+  return with(machine, record, filtered, p, steady, parameters);
 }
 
 Eigen::VectorXd residuals(const Effect& machine, const NoisyRecord& record, const Filtered& filtered,

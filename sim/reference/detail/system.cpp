@@ -449,7 +449,7 @@ void ReferenceSystem::unit_jacobian(std::size_t u, double t, double a, const dou
       x[i] = D8(y[(k < 2 ? row : bus_row(unit.seen[k / 2 - 1])) + k % 2]);
     }
     const int to = std::min(from + kSensitivities, members);
-    for (int i = from; i < to; ++i) x[i].d[i - from] = 1.0;
+    for (int i = from; i < to; ++i) x[i].d.set(i - from, 1.0);
     D8 ir, ii;
     (void)evaluate<D8>(u, t, x.data(), &x[n], &x[n] + 2, dx.data(), ir, ii);
     for (int col = from; col < to; ++col) {

@@ -102,7 +102,7 @@ TEST(Likelihood, SensitivitiesAreDerivativesOfTheResiduals) {
   EXPECT_LT((at(0, 0) - l.value).norm(), 1e-8);
   for (std::size_t k = 0; k < by.size() + kSteady; ++k) {
     const Eigen::VectorXd difference = (at(k, 1e-5) - at(k, -1e-5)) / 2e-5;
-    EXPECT_LT((difference - l.jacobian.col(static_cast<Eigen::Index>(k))).norm(), 2e-3 * difference.norm())
+    EXPECT_LT((difference - l.jacobian().col(static_cast<Eigen::Index>(k))).norm(), 2e-3 * difference.norm())
         << k;
   }
 }

@@ -271,7 +271,7 @@ TEST(Conformance, DualsEqualCentralDifferences) {
       for (std::size_t i = 0; i < e->states.size(); ++i) shift.push_back((i == 1 ? 0.01 : 0.1) * u(random));
       for (std::size_t j = 0; j < p.size(); ++j) {
         std::vector<D8> dual(p.begin(), p.end());
-        dual[j].d[0] = 1.0;
+        dual[j].d.set(0, 1.0);
         const auto exact = moved<D8>(*e, dual, shift);
         const double h = 1e-6 * std::max(1e-2, std::fabs(p[j]));
         auto up = p, down = p;

@@ -207,7 +207,7 @@ TEST(PlantConformance, DualsEqualCentralDifferences) {
       if (values[block][j] == 0.0 && record.low == 0.0) continue;
       std::vector<std::vector<D8>> dual;
       for (const auto& v : values) dual.emplace_back(v.begin(), v.end());
-      dual[block][j].d[0] = 1.0;
+      dual[block][j].d.set(0, 1.0);
       const auto exact = moved<D8>(plant, dual, shift);
       const double h = 1e-6 * std::max(1e-2, std::fabs(values[block][j]));
       auto up = values, down = values;
@@ -325,7 +325,7 @@ TEST(LoadConformance, DualsEqualCentralDifferences) {
     for (std::size_t j = 0; j < e->parameters.size(); ++j) {
       if (e->parameters[j].is_code() || (load.block.p[j] == 0.0 && e->parameters[j].low == 0.0)) continue;
       std::vector<D8> dual(load.block.p.begin(), load.block.p.end());
-      dual[j].d[0] = 1.0;
+      dual[j].d.set(0, 1.0);
       const auto exact = value(dual);
       const double h = 1e-6 * std::max(1e-2, std::fabs(load.block.p[j]));
       auto up = load.block.p, down = up;

@@ -153,7 +153,7 @@ TEST(UserModelFile, DualsEqualCentralDifferences) {
     const auto p = user_model->default_parameters();
     for (std::size_t j = 0; j < p.size(); ++j) {
       std::vector<D8> dual(p.begin(), p.end());
-      dual[j].d[0] = 1.0;
+      dual[j].d.set(0, 1.0);
       const auto exact = outputs<D8>(*user_model, dual, test::ControlBench::rated(), disturbed());
       const double h = 1e-6 * std::max(1e-2, std::abs(p[j]));
       auto up = p, down = p;

@@ -164,7 +164,7 @@ class LinearSensitivities {
         }
       }
       for (std::size_t d = 0; d < some.size(); ++d)
-        for (std::size_t i = 0; i < n_; ++i) S_(i, first + d) = seeded.x0[i].d[d];
+        for (std::size_t i = 0; i < n_; ++i) S_(i, first + d) = seeded.x0[i].d[int(d)];
       if (!std::ranges::any_of(some, moves_coefficients)) continue;
       has_coefficients_[first / kLanes] = 1;
       Copies& copies =

@@ -33,13 +33,16 @@ struct Seeds {
 };
 template <>
 struct Seeds<sim::D8> {
-  static void add(sim::D8& x, std::size_t parameter, double by) { x.d[parameter] += by; }
-  static double get(const sim::D8& x, std::size_t parameter) { return x.d[parameter]; }
+  static void add(sim::D8& x, std::size_t parameter, double by) {
+    const int k = static_cast<int>(parameter);
+    x.d.set(k, x.d[k] + by);
+  }
+  static double get(const sim::D8& x, std::size_t parameter) { return x.d[static_cast<int>(parameter)]; }
   /// Returns the magnitude for error control. Sensitivities are weighted by 0.01, because a fit tolerates
   /// larger errors in sensitivities.
   static double size(const sim::D8& x) {
     double worst = std::abs(x.a);
-    for (const double d : x.d) worst = std::max(worst, 1e-2 * std::abs(d));
+    for (int k = 0; k < sim::kSensitivities; ++k) worst = std::max(worst, 1e-2 * std::abs(x.d[k]));
     return worst;
   }
 };
