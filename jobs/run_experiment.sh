@@ -2,7 +2,8 @@
 # Runs one experiment from its config to its tables; finished parts are skipped. The quickstart, the
 # nightly benchmark and the Slurm jobs use this script.
 #   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
-#                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER]
+#                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER] [--seconds N]
+#                               [--any-maker 0|1]
 #     --stage     check, databank, generate, train, tables, or all (default: all); count-tasks prints the number of
 #                 tasks of the stage train: one per combination of network, noise level and fold, and one per
 #                 combination of network and share of the training rows
@@ -11,6 +12,8 @@
 #     --ranks     number of MPI processes that generate (default: one per core)
 #     --launcher  command that starts these processes (default mpirun)
 #     --build     build folder (default build/release)
+#     --seconds   save and end after this time [s] with exit code 2 (default: no limit)
+#     --any-maker 1: keep results and checkpoints of other software (default 0: refuse them)
 # $SWINGBANK_EXPERIMENT, $SWINGBANK_PRESET, $SWINGBANK_OUT and $SWINGBANK_BUILD are the defaults of the options.
 # Exit codes: 0 done, 1 failed, 2 saved on a signal (run it again to continue).
 set -euo pipefail
@@ -18,7 +21,7 @@ set -euo pipefail
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 experiment=${SWINGBANK_EXPERIMENT:-} preset=${SWINGBANK_PRESET:-quick} out=${SWINGBANK_OUT:-}
 build=${SWINGBANK_BUILD:-$source_folder/build/release}
-stage=all task='' seed=1 ranks=$(nproc) launcher=mpirun
+stage=all task='' seed=1 ranks=$(nproc) launcher=mpirun seconds='' any_maker=0
 # shellcheck source=jobs/run_saving.bash
 source "$source_folder/jobs/run_saving.bash"
 while (($#)); do
@@ -32,7 +35,9 @@ while (($#)); do
     --ranks) ranks=${2:?} ;;
     --launcher) launcher=${2:?} ;;
     --build) build=${2:?} ;;
-    -h | --help) sed -n '2,15p' "$0"; exit 0 ;;
+    --seconds) seconds=${2:?} ;;
+    --any-maker) any_maker=${2:?} ;;
+    -h | --help) sed -n '2,18p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (jobs/run_experiment.sh has no such option): run it with --help" >&2; exit 1 ;;
   esac
   shift 2
@@ -46,6 +51,11 @@ swingbank=$build/bin/swingbank
 if [[ ! -x $swingbank ]]; then
   echo "swingbank missing at $swingbank (it is not built): run bash jobs/setup.sh" >&2
   exit 1
+fi
+
+if [[ -n $seconds ]]; then
+  { sleep "$seconds" && kill -USR1 $$; } 9>&- &
+  trap 'kill %1 2>/dev/null || true' EXIT
 fi
 
 # ask KEY: prints a property of the experiment, such as dataset, draws or tasks
@@ -108,6 +118,7 @@ run_task() {
   common=("$(dataset_folder)" --experiment "$experiment" --preset "$preset" --seed "$seed" --network "$network" --noise "$noise"
     --out "$out/results")
   if [[ -n $share ]]; then common+=(--train-share "$share"); fi
+  if [[ $any_maker != 0 ]]; then common+=(--any-maker); fi
   with_more=$(ask training_rows)
   if grep -qxF "$network" <<<"$with_more"; then common+=(--training-rows "$(training_folder)"); fi
   if [[ $fold == none ]]; then

@@ -1,17 +1,16 @@
 #!/usr/bin/env bash
-# Computes the tables within a given number of hours, writes a dated report and lists the changes since earlier runs.
-#   bash research/nightly.sh [--hours N] [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--seeds K]
-#                        [--keep-data] [--tests 0|1] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
-#     --hours      duration of the whole run on this machine (default 2). The preset `nightly` is scaled so that the
-#                  tables take two thirds of it; the nightly tests, the blind test and the fuzz targets share the
-#                  remaining time
-#     --out        folder with one folder per nightly run (default out/nightly); `latest` points to the last run
+# Runs the methods without training anew, continues the trainings at the thesis's size, writes a dated report and lists
+# the changes since earlier runs.
+#   bash research/nightly.sh [--hours N] [--out FOLDER] [--date YYYY-MM-DD] [--preset NAME] [--seed N] [--keep-data]
+#                        [--tests 0|1] [--fuzz SECONDS] [--blind CASES] [EXPERIMENT...]
+#     --hours      duration of the whole run on this machine (default 2). The trainings at the thesis's size end after two
+#                  thirds of it; the nightly tests, the blind test and the fuzz targets share the remaining time
+#     --out        folder with one folder per nightly run, and `at-size` with the trainings at the thesis's size (default
+#                  out/nightly); `latest` points to the last run
 #     --date       date of the run (default today); an interrupted run that is started again with its date continues
-#                  with its original sizes
-#     --preset     run this preset without scaling, however long it takes
-#     --seed       first seed of the training (default ten times the number of days since 1970). Every nightly run thus
-#                  has new seeds, and the runs show the random variation of a result
-#     --seeds      number of seeds to train with, from --seed on (default 3 if --hours is 4 or more, else 1)
+#     --preset     preset that is run as a whole (default nightly)
+#     --seed       seed of that preset (default: the number of days since 1970). Every nightly run thus has another
+#                  seed, and the runs show the random variation of a result
 #     --keep-data  keep the simulated events (gigabytes; the same config generates the same bytes again)
 #     --tests      1: run the nightly tier of the tests (tests/run.sh --nightly), 0: skip it; default 1 if the tests, as
 #                  measured last, take at most 70 % of the remaining time (before the first measurement: 1.5 h)
@@ -23,9 +22,9 @@
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-out=$source_folder/out/nightly date=$(date +%F) preset='' seed='' seeds='' hours=2 keep_data=0 fuzz='' blind='' tests='' experiments=()
+out=$source_folder/out/nightly date=$(date +%F) preset=nightly seed='' hours=2 keep_data=0 fuzz='' blind='' tests='' experiments=()
 tries=3 pause=${SWINGBANK_NIGHTLY_PAUSE:-60} # [s] between tries
-hours_of_seeds=4                             # [h]; from this duration on, three seeds are used
+seeds_at_size=3                              # seeds of the trainings at the thesis's size
 table_share=0.67                             # share of the hours for the tables
 tests_take=5400                              # [s] of two cores with builds; default before the first measurement
 blind_share=0.6                              # share of the time that remains before the blind test
@@ -38,12 +37,11 @@ while (($#)); do
     --date) date=${2:?--date needs a day}; shift 2 ;;
     --preset) preset=${2:?--preset needs a name}; shift 2 ;;
     --seed) seed=${2:?--seed needs a number}; shift 2 ;;
-    --seeds) seeds=${2:?--seeds needs a number}; shift 2 ;;
     --keep-data) keep_data=1; shift ;;
     --tests) tests=${2:?--tests needs 0 or 1}; shift 2 ;;
     --fuzz) fuzz=${2:?--fuzz needs seconds}; shift 2 ;;
     --blind) blind=${2:?--blind needs a number of cases}; shift 2 ;;
-    -h | --help) sed -n '2,23p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,22p' "$0"; exit 0 ;;
     -*) echo "unknown option at '$1' (research/nightly.sh has no such option): run it with --help" >&2; exit 1 ;;
     *) experiments+=("$(realpath -m "$1")"); shift ;;
   esac
@@ -56,13 +54,8 @@ if [[ ! $hours =~ ^[0-9]*\.?[0-9]+$ ]] || ! awk "BEGIN {exit !($hours > 0)}"; th
   echo "no hours at --hours $hours (it must be a number above 0): give one like 2 or 0.5" >&2
   exit 1
 fi
-seeds=${seeds:-$(awk "BEGIN {print ($hours >= $hours_of_seeds ? 3 : 1)}")}
-if [[ ! $seeds =~ ^([1-9]|10)$ ]]; then
-  echo "no number of seeds at --seeds $seeds (the next run's seeds start ten higher): give 1 to 10" >&2
-  exit 1
-fi
 ((${#experiments[@]})) || experiments=("$source_folder"/configs/experiments/*.toml)
-seed=${seed:-$((day / 86400 * 10))}
+seed=${seed:-$((day / 86400))}
 build=${SWINGBANK_BUILD:-$source_folder/build/release}
 swingbank=$build/bin/swingbank
 night=$out/$date
@@ -101,8 +94,10 @@ part() {
   return "$status"
 }
 used() { awk -F'\t' '{sum += $2} END {printf "%d", sum}' "$night/parts.tsv"; }
-# left SHARE: prints the remaining time [s] times SHARE
-left() { awk -v used="$(used)" "BEGIN {left = ($hours * 3600 - used) * $1; printf \"%d\", (left > 0 ? left : 0)}"; }
+# left SHARE [OF-HOURS]: prints the remaining time [s] of a share of the hours (default 1), times SHARE
+left() {
+  awk -v used="$(used)" "BEGIN {left = ($hours * ${2:-1} * 3600 - used) * $1; printf \"%d\", (left > 0 ? left : 0)}"
+}
 
 # Prints the duration of the nightly tests when they last ran to the end [s].
 tests_took() {
@@ -115,55 +110,70 @@ tests_took() {
   echo "$took"
 }
 
-# keep NAME...: saves these variables for a restart of this nightly run
-keep() { declare -p "$@" | sed 's/^declare -[-a]* //' >>"$night/sizes.conf"; }
-
-# Determines the sizes of the nightly run once. A restart uses them again; of the options of a restart, only --tests,
-# --blind, --fuzz and --keep-data have an effect.
-settle() {
-  if [[ -s $night/sizes.conf ]]; then
-    local asked_tests=$tests asked_blind=$blind asked_fuzz=$fuzz
-    # shellcheck source=/dev/null
-    source "$night/sizes.conf"
-    tests=${asked_tests:-$tests} blind=${asked_blind:-$blind} fuzz=${asked_fuzz:-$fuzz}
-    return
-  fi
-  local name=$preset table_hours i
-  rm -rf "$night/experiments"
-  mkdir -p "$night/experiments"
-  if [[ -z $preset ]]; then
-        name=nightly-${hours/./_}h # a dot would separate two keys
-    table_hours=$(awk "BEGIN {print $hours * $table_share}")
-    "$swingbank" night-plan "${experiments[@]}" --preset nightly --hours "$table_hours" --cores "$(nproc)" --seeds "$seeds" \
-      --rates "$source_folder/research/rates.toml" --name "$name" --out "$night/experiments" >"$night/plan.md" || return 1
-    for i in "${!experiments[@]}"; do experiments[i]=$night/experiments/$(basename "${experiments[i]}"); done
-    cat "$night/plan.md"
-  fi
-  preset=$name
-  keep hours preset seed seeds experiments
-}
-
-# run_stage STAGE SEED EXPERIMENT: runs one stage of an experiment, with repetitions
+# run_stage STAGE EXPERIMENT OPTION...: runs one stage of an experiment, with repetitions
 run_stage() {
-  with_tries bash "$source_folder/jobs/run_experiment.sh" --experiment "$3" --preset "$preset" --seed "$2" \
-    --out "$night/$(basename "$3" .toml)" --stage "$1"
+  with_tries bash "$source_folder/jobs/run_experiment.sh" --stage "$1" --experiment "$2" "${@:3}"
 }
+remove_events() { ((keep_data)) || rm -rf "$1/data" "$1/training-data"; }
 
-run_tables() {
-  local experiment name k folders=()
+# Runs the preset that is repeated every night.
+run_preset() {
+  local experiment name folder options
   for experiment in "${experiments[@]}"; do
     name=$(basename "$experiment" .toml)
-        if [[ ! -e $night/$name/trained ]]; then # otherwise its events may be removed already
-      part "$name: events" run_stage generate "$seed" "$experiment" || return $?
-      for ((k = 0; k < seeds; ++k)); do
-        part "$name: training, seed $((seed + k))" run_stage train $((seed + k)) "$experiment" || return $?
-      done
-      touch "$night/$name/trained"
+    folder=$night/$name
+    options=(--preset "$preset" --seed "$seed" --out "$folder")
+    if [[ ! -e $folder/trained ]]; then # otherwise its events may be removed already
+      part "$name: events" run_stage generate "$experiment" "${options[@]}" || return $?
+      part "$name: methods" run_stage train "$experiment" "${options[@]}" || return $?
+      touch "$folder/trained"
     fi
-    ((keep_data)) || rm -rf "$night/$name/data" "$night/$name/training-data"
-    folders+=("$night/$name/results")
+    remove_events "$folder"
   done
-  part tables "$swingbank" tables "${folders[@]}" --out "$night/tables"
+}
+
+# train_at_size EXPERIMENT SEED: continues the trainings of preset thesis-TABLE until their time has passed. Results of
+# former software are kept; the page marks them as stale.
+train_at_size() {
+  local name folder options stage status=0 seconds
+  name=$(basename "$1" .toml)
+  folder=$out/at-size/$name
+  if [[ -e $folder/trained-seed$2 ]]; then return; fi
+  options=(--preset "$(size_preset "$1")" --seed "$2" --out "$folder")
+  for stage in databank generate train; do
+    seconds=$(left 1 "$table_share")
+    if ((seconds == 0)); then return; fi
+    part "$name at size, seed $2: $stage" run_stage "$stage" "$1" "${options[@]}" --seconds "$seconds" --any-maker 1 ||
+      status=$?
+    if ((status == 2 && !stop_wanted)); then return; fi # its time has passed
+    if ((status != 0)); then return "$status"; fi
+  done
+  touch "$folder/trained-seed$2"
+}
+size_preset() { echo "thesis-$("$swingbank" train --experiment "$1" --preset "$preset" --print table)"; }
+# Trains at the thesis's size, each night first another experiment. An experiment without preset thesis-TABLE has none.
+train_all_at_size() {
+  local sized=() experiment k of_seed
+  for experiment in "${experiments[@]}"; do
+    if grep -qF "[preset.$(size_preset "$experiment")]" "$experiment"; then sized+=("$experiment"); fi
+  done
+  for ((of_seed = 1; of_seed <= seeds_at_size; ++of_seed)); do
+    for ((k = 0; k < ${#sized[@]}; ++k)); do
+      train_at_size "${sized[(day / 86400 + k) % ${#sized[@]}]}" "$of_seed" || return $?
+    done
+  done
+  for experiment in "${sized[@]}"; do remove_events "$out/at-size/$(basename "$experiment" .toml)"; done
+}
+
+# Makes one page of tonight's results and of those at the thesis's size. The software of tonight's results is the present
+# one.
+run_tables() {
+  local folders=() folder
+  for folder in "$night"/*/results "$out"/at-size/*/results; do
+    if compgen -G "$folder/*.json" >/dev/null; then folders+=("$folder"); fi
+  done
+  part tables "$swingbank" tables "${folders[@]}" --out "$night/tables" \
+    --software "$(grep -ho '"software": *"[^"]*"' "$night"/*/results/*.json | sed 's/.*: *"//;s/"$//' | sort | tail -n 1)"
 }
 
 # Runs a blind test (docs/reference/blind-test-results.md). After an interruption, finished cases and verdicts remain.
@@ -197,12 +207,11 @@ fuzz_seconds() { # time for each target [s], from the remaining time; two target
 report() {
   {
     "$swingbank" nightly-compare "$out" --night "$date" || return 1
-    printf '\n## Time\n\n%s of %s requested hours, on %d cores, preset %s, seed %d (%d of them).\n\n' \
-      "$(awk -v s="$(used)" 'BEGIN {printf "%.2f", s / 3600}')" "$hours" "$(nproc)" "$preset" "$seed" "$seeds"
+    printf '\n## Time\n\n%s of %s requested hours, on %d cores, preset %s, seed %d.\n\n' \
+      "$(awk -v s="$(used)" 'BEGIN {printf "%.2f", s / 3600}')" "$hours" "$(nproc)" "$preset" "$seed"
     printf '| part | time [s] |\n|---|---:|\n'
     awk -F'\t' '!($1 in sum) {order[++n] = $1} {sum[$1] += $2} END {for (i = 1; i <= n; ++i) print "| " order[i] " | " sum[order[i]] " |"}' \
       "$night/parts.tsv"
-    if [[ -s $night/plan.md ]]; then printf '\n## Plan\n\nBy the rates of research/rates.toml:\n\n' && cat "$night/plan.md"; fi
     printf '\n'
         sed 's/^#/##/;s,](tables/,](tables/tables/,' "$night/tables/tables.md" # adapts the links to the pictures
     if [[ -s $night/blind/score.md ]]; then
@@ -236,19 +245,20 @@ touch "$night/parts.tsv"
 exec > >(exec tee -a "$night/log.txt" 9>&-) 2>&1
 build_all() { bash "$source_folder/jobs/setup.sh" 9>&-; }
 if [[ -z ${SWINGBANK_BUILD:-} ]]; then part build build_all || stopped $?; fi
-settle || stopped $?
 status=0
+run_preset || stopped $?
+train_all_at_size || stopped $?
 run_tables || stopped $?
 report || stopped 1
 ln -sfn "$date" "$out/latest"
 
-if [[ -z $tests ]]; then tests=$(($(left 0.7) >= $(tests_took))) && keep tests; fi
+if [[ -z $tests ]]; then tests=$(($(left 0.7) >= $(tests_took))); fi
 if [[ $tests != 0 ]]; then part "tests of the night" night_tests || status=$?; fi
 ((status != 2)) || stopped 2
-if [[ -z $blind ]]; then blind=$(($(left "$blind_share") / blind_case)) && keep blind; fi
+if [[ -z $blind ]]; then blind=$(($(left "$blind_share") / blind_case)); fi
 if [[ $blind != 0 ]]; then part "blind test, $blind cases" blind_test || status=$?; fi
 ((status != 2)) || stopped 2
-if [[ -z $fuzz ]]; then fuzz=$(fuzz_seconds) && keep fuzz; fi
+if [[ -z $fuzz ]]; then fuzz=$(fuzz_seconds); fi
 if [[ $fuzz != 0 ]]; then part "fuzz targets, $fuzz s each" fuzz_targets || status=1; fi
 report || status=1
 cat "$night/report.md"

@@ -1,5 +1,5 @@
-// Rates for `swingbank night-plan` of one preset: samples per processor second of every network with the
-// preset's sizes and a run's BLAS kernels, and rows per processor second of methods without training. Usage:
+// Rates of one preset: samples per processor second of every network with the preset's sizes and a run's BLAS
+// kernels, and rows per processor second of methods without training. Usage:
 // bench_rates DATASET EXPERIMENT PRESET [rounds 5] [rows 200]. One thread.
 #include <ATen/ATen.h>
 #include <fmt/format.h>
