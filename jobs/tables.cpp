@@ -33,13 +33,16 @@ report::Provenance sources(const std::vector<report::RunResult>& results, int ar
 
 int run(CommandLine& line, int argc, char** argv) {
   std::vector<std::string> folders;
-  std::string out;
+  std::string out, software;
   line.add("results", folders, "folders with the JSON files of train and cross-validate").required();
   line.add("--out", out, "folder for tables.md with its pictures, tables.html and CSV files").required();
+  line.add("--software", software,
+           "present software, as in key software of a result; results of other software are "
+           "marked as stale");
   line.example("swingbank tables results --out tables");
   if (!line.parse(argc, argv)) return line.end();
   const auto results = report::read_results({folders.begin(), folders.end()});
-  const report::TablesReport report = report::make_tables(results, sources(results, argc, argv));
+  const report::TablesReport report = report::make_tables(results, sources(results, argc, argv), software);
   const std::filesystem::path folder = out;
   for (const auto& [name, content] : report.csv) write_file(folder / name, content);
   for (const auto& [name, content] : report.pictures)

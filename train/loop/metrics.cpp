@@ -1,5 +1,8 @@
 #include "train/loop/metrics.hpp"
 
+#include <algorithm>
+
+#include "base/median.hpp"
 #include "train/data/normalise.hpp"
 
 namespace swingbank::train::loop {
@@ -12,6 +15,7 @@ std::optional<double> ParameterScore::relative() const {
 Score score(const ScoreInput& in) {
   const std::size_t count = in.names.size(), rows = in.truth.size() / count;
   Score all;
+  std::vector<double> of_row(rows);
   std::size_t varied = 0;
   for (std::size_t p = 0; p < count; ++p) {
     ParameterScore s{in.names[p], in.units[p]};
@@ -21,6 +25,7 @@ Score score(const ScoreInput& in) {
       const double value = in.truth[r * count + p], e = in.predicted[r * count + p] - value,
                    g = in.training_mean[p] - value;
       error += e * e;
+      of_row[r] += e * e / static_cast<double>(count);
       guess += g * g;
       truth.add(0, value);
     }
@@ -44,6 +49,11 @@ Score score(const ScoreInput& in) {
     all.baseline_mse_varied_only /= static_cast<double>(varied);
   }
   all.ratio = all.mse / all.baseline_mse;
+  all.median_row = median(of_row);
+  all.worst_row = *std::ranges::max_element(of_row);
+  all.failed_rows = static_cast<double>(std::ranges::count_if(
+                        of_row, [&](double mse) { return !(mse < all.baseline_mse); })) /
+                    static_cast<double>(rows);
   return all;
 }
 

@@ -110,7 +110,6 @@ Scale scale_of(const Plot& plot, bool horizontal) {
     for (const auto& [x, y] : s.points) take(horizontal ? x : y);
     if (!horizontal)
       for (const auto& [a, b] : s.reach) take(a), take(b);
-    for (const auto& b : s.band) horizontal ? take(b[0]) : (take(b[1]), take(b[2]));
   }
   if (horizontal)
     for (const auto& rule : plot.rules) take(rule.x);
@@ -134,7 +133,6 @@ class Panel {
     x_.lay(left_edge_, left_edge_ + across_);
     y_.lay(top_ + down_, top_);
     std::string out = words(left_edge_, y + 14, plot_.title, {"start", kInk, 13, true}) + grid() + rules();
-    for (const auto& s : plot_.series) out += band(s);
     for (const auto& s : plot_.series) out += line(s) + marks(s);
     return out;
   }
@@ -188,15 +186,6 @@ class Panel {
       free_from = middle + half + 6;
     }
     return out;
-  }
-  [[nodiscard]] std::string band(const PlotSeries& s) const {
-    if (s.band.empty()) return {};
-    std::string path;
-    for (const auto& b : s.band) path += fmt::format("{:.1f},{:.1f} ", x_.at(b[0]), down_at(b[1]));
-    for (auto b = s.band.rbegin(); b != s.band.rend(); ++b)
-      path += fmt::format("{:.1f},{:.1f} ", x_.at((*b)[0]), down_at((*b)[2]));
-    path.pop_back();
-    return fmt::format("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.14\"/>", path, s.colour);
   }
   [[nodiscard]] bool shown(const std::pair<double, double>& p) const {
     return x_.shows(p.first) && (plot_.y.names.empty() ? y_.shows(p.second) : std::isfinite(p.second));
@@ -265,10 +254,6 @@ std::string legend(const std::vector<Plot>& panels, double width, double& height
     if (s->line)
       out += stroke(x - 5, y - 4, x + 11, y - 4, s->colour.c_str(),
                     s->dashed ? " stroke-dasharray=\"5 4\"" : "");
-    if (!s->band.empty())
-      out += fmt::format(
-          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"16\" height=\"12\" fill=\"{}\" fill-opacity=\"0.14\"/>",
-          x - 5, y - 10, s->colour);
     out += Panel::mark(*s, x + 3, y - 4) + words(x + 16, y, s->name, {"start", kInk});
     x += wide;
   }

@@ -25,7 +25,6 @@ struct PlotSeries {
   double size = 4.5, opacity = 1.0;                    ///< size [px] and opacity of the marks
   bool line = false, dashed = false;                   ///< points are joined by a line; the line is dashed
   std::vector<std::pair<double, double>> reach = {};   ///< error bars: least and largest y of each point
-  std::vector<std::array<double, 3>> band = {};        ///< shaded band: x, low, high
 };
 /// Vertical line across the plot.
 struct PlotRule {

@@ -135,6 +135,13 @@ RunResult read_result(const fs::path& file, Problems& problems) {
     r.H_ratio = std::numeric_limits<double>::quiet_NaN();  // H is constant in that dataset
   else
     o.get("H_ratio", r.H_ratio);
+  if (parsed.contains("rows_mse")) {
+    Object rows(parsed["rows_mse"], file.string() + " rows_mse", problems);
+    RowScatter& scatter = r.scatter.emplace();
+    rows.get("median", scatter.median);
+    rows.get("worst", scatter.worst);
+    rows.get("failed", scatter.failed);
+  }
   r.seen = std::numeric_limits<double>::quiet_NaN();
   if (parsed.contains("seen_mse") && !parsed["seen_mse"].is_null()) o.get("seen_mse", r.seen);
   o.get("shuffled_labels", r.shuffled);

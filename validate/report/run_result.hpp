@@ -29,6 +29,12 @@ struct SeveralRecords {
   double mse_of_mean = 0;   ///< MSE of the mean of the records' estimates, raw units
   std::optional<double> mse_of_product;  ///< MSE of the product of the posteriors; none: no posteriors
 };
+/// MSE of single test rows: median, largest, and share of rows that are no better than predict-the-mean.
+struct RowScatter {
+  double median = 0;  ///< median of the rows' MSE
+  double worst = 0;   ///< largest MSE of a row
+  double failed = 0;  ///< share of rows whose MSE is not below that of predict-the-mean, 0 to 1
+};
 /// Content of a run's result file.
 struct RunResult {
   std::filesystem::path file;          ///< the result file
@@ -51,12 +57,14 @@ struct RunResult {
   /// MSE on the validation rows, whose generators also have training rows; NaN: nothing was trained.
   double seen = 0;
   double H_ratio = 0;                       ///< ratio for H alone; NaN if H is constant
+  std::optional<RowScatter> scatter;        ///< none in results of former versions
   std::vector<ParameterResult> parameters;  ///< scores of the parameters
   std::vector<Coverage> coverage;           ///< empty: the method gives no intervals
   std::vector<SeveralRecords> several;      ///< empty: no plant has three test records
   bool shuffled = false;                    ///< control run with shuffled labels
   int threads = 1;                          ///< number of threads
   std::string software, blas;               ///< version of Swingbank; BLAS library
+  bool stale = false;                       ///< of other software than the present one (make_tables())
   /// Software and BLAS of the run. Reports note comparisons between different ones.
   [[nodiscard]] std::string maker() const { return software + ", " + blas; }
 };

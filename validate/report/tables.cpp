@@ -14,6 +14,7 @@
 #include "base/capitals.hpp"
 #include "base/median.hpp"
 #include "validate/report/detail/method_tables.hpp"
+#include "validate/report/detail/overview.hpp"
 #include "validate/report/detail/scaling.hpp"
 #include "validate/report/detail/table_pictures.hpp"
 #include "validate/report/detail/thesis_tables.hpp"
@@ -273,6 +274,7 @@ void add_task(const Task& task, const std::string& stem, Report& to) {
   to.picture(stem + "-reliability.svg", reliability_picture(task),
              "Coverage of the intervals: a point on the dashed line is an interval with nominal coverage.");
   if (const Table several = several_table(task); !several.rows.empty()) to.document.add(several);
+  if (const Table scatter = scatter_table(task); !scatter.rows.empty()) to.document.add(scatter);
   to.document.add(effort_table(task));
 }
 
@@ -284,9 +286,8 @@ void add_scaling(const std::vector<RunResult>& results, const std::string& table
   const auto series = scaling_series(own);
   if (series.empty()) return;
   to.document.subsection("Error against training rows and time");
-  to.picture(
-      stem + "-scaling.svg", scaling_picture(series),
-      "Each point is a run, or the mean of several; dashed, the power law through them with its 95 % band.");
+  to.picture(stem + "-scaling.svg", scaling_picture(series),
+             "Each point is a run, or the mean of several, with the range over seeds.");
   to.document.add(scaling_table(series));
 }
 
@@ -373,7 +374,7 @@ void add_table(const std::vector<RunResult>& results, const std::vector<Task>& t
 std::vector<std::pair<std::string, std::string>> csv_files(const std::vector<RunResult>& results,
                                                            const std::vector<Task>& tasks) {
   std::vector<std::pair<std::string, std::string>> files;
-  std::vector<RunResult> whole = results;  // runs on a share of the rows are for the scaling law only
+  std::vector<RunResult> whole = results;  // runs on a share of the rows are for the scaling only
   std::erase_if(whole, [](const RunResult& r) { return r.share < 1 || r.judged > 0; });
   for (const auto& block : group_results(std::move(whole))) {
     files.emplace_back(file_stem(block) + ".csv", csv(score_table(block)));
@@ -388,7 +389,11 @@ std::vector<std::pair<std::string, std::string>> csv_files(const std::vector<Run
 
 }  // namespace
 
-TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources) {
+TablesReport make_tables(const std::vector<RunResult>& all, const Provenance& sources,
+                         const std::string& present) {
+  std::vector<RunResult> results = all;
+  if (!present.empty())
+    for (auto& r : results) r.stale = r.software != present;
   Report to{
       {"Calibration by learning: Tables IV, V and VI",
        "Mean squared error over the model's parameters on test events, in raw units, compared with the thesis "
@@ -403,7 +408,7 @@ TablesReport make_tables(const std::vector<RunResult>& results, const Provenance
         Paragraph{"Green: at most the thesis's MSE (with noise: the floor). Orange: no better than "
                   "predict-the-mean.",
                   Paragraph::Kind::plain, false});
-    for (const auto& table : overview_tables(tasks)) to.document.add(table);
+    to.document.add(overview_table(tasks));
   }
   for (const auto& table : kThesisTables) {
     const std::string number(table.number);

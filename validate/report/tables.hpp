@@ -35,7 +35,9 @@ struct TablesReport {
   std::vector<std::pair<std::string, std::string>> csv;  ///< name, content: two per TableBlock, one per task
   std::vector<std::pair<std::string, std::string>> pictures;  ///< SVG, in kPictureFolder
 };
-/// Builds the report; `sources` is its provenance.
-TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources);
+/// Builds the report; `sources` is its provenance. Results of other software than `present` are marked as
+/// stale; with an empty text none is.
+TablesReport make_tables(const std::vector<RunResult>& results, const Provenance& sources,
+                         const std::string& present = {});
 
 }  // namespace swingbank::validate::report

@@ -33,6 +33,14 @@ TEST(Metrics, MatchHandCalculatedValues) {
   EXPECT_DOUBLE_EQ(s.baseline_mse_varied_only, 3.0);
   EXPECT_DOUBLE_EQ(s.ratio, 0.125);
   EXPECT_DOUBLE_EQ(*s.H_ratio, 0.1);
+  EXPECT_DOUBLE_EQ(s.median_row, (1.25 / 3 + 0.25 / 3) / 2);
+  EXPECT_DOUBLE_EQ(s.worst_row, 1.25 / 3);
+  EXPECT_DOUBLE_EQ(s.failed_rows, 0.0);
+  const std::vector<double> constant = {5.0, 2.0, 0.3, 4.0, 1.0, 0.3};  // the first row is the training mean
+  EXPECT_DOUBLE_EQ(
+      score({constant, truth, mean, {"H", "D", "X"}, {"s", "pu", "pu"}, {1.0, 0.0, 0.3}, {10.0, 3.0, 0.3}})
+          .failed_rows,
+      0.5);
 }
 
 TEST(Metrics, OmitHWhenAbsent) {

@@ -10,6 +10,8 @@
 
 #include "base/json.hpp"
 #include "tests/validate/playin/support.hpp"
+#include "validate/report/detail/method_tables.hpp"
+#include "validate/report/detail/overview.hpp"
 #include "validate/report/detail/scaling.hpp"
 #include "validate/report/detail/thesis_tables.hpp"
 
@@ -238,6 +240,41 @@ TEST_F(TablesTest, ParametersShowMedianAndWorst) {
   EXPECT_THAT(row(table, "H"), ElementsAre("H", "s", "2.02", "0.2", "0.6", "#32"));
   EXPECT_THAT(row(table, "Xdpp"), ElementsAre("Xdpp", "pu", "0", "constant", "constant", "–"));
 }
+/// The first table selects among presets: the thesis's network with the longest training, the best network.
+TEST_F(TablesTest, OverviewSelectsAmongPresets) {
+  json few = result("V", "cnn", 30, 0.1), many = result("V", "cnn", 30, 0.2),
+       many_39 = result("V", "cnn", 39, 0.4);
+  for (json* r : {&many, &many_39}) {
+    (*r)["preset"] = "thesis-V";
+    (*r)["train_rows"] = 54000;
+    (*r)["software"] = "former";
+  }
+  json steps = result("V", "swing-steps", 30, 0.001);
+  steps["epochs"] = 0;
+  steps["noise"] = 0.001;
+  write("few", few);
+  write("many", many);
+  write("many_39", many_39);
+  write("steps", steps);
+  const Table table = overview_table(tasks_of(read()));
+  EXPECT_THAT(row(table, "V, mean, no noise"),
+              ElementsAre("V, mean, no noise", "0.0526", "CNN 1.62 (0.3) ¹, 54000 × 20",
+                          "CNN 0.54 (0.1) ¹, 4000 × 20", "–", "–", "–"));
+  EXPECT_THAT(row(table, "V, worst, no noise")[2], "CNN 2.16 (0.4) ¹, #39, 54000 × 20");
+  EXPECT_THAT(row(table, "V, mean, noise 0.1 %")[4], "0.0054 (0.001) ¹, 600");
+  const std::string page = make_tables(read(), {}, "test").markdown;
+  EXPECT_THAT(page, AllOf(HasSubstr("CNN 1.62 (0.3) ¹ stale, 54000 × 20"), HasSubstr("| former (stale) |"),
+                          HasSubstr("CNN 0.54 (0.1) ¹, 4000 × 20"), HasSubstr("| test |")));
+}
+TEST_F(TablesTest, ScatterOfSingleRows) {
+  json r = result("V", "cnn", 30, 0.1), other = result("V", "cnn", 31, 0.1);
+  EXPECT_TRUE(scatter_table(tasks_of({RunResult{}})[0]).rows.empty());
+  r["rows_mse"] = {{"median", 0.2}, {"worst", 9.0}, {"failed", 0.01}};
+  other["rows_mse"] = {{"median", 0.4}, {"worst", 3.0}, {"failed", 0.03}};
+  write("a", r);
+  write("b", other);
+  EXPECT_THAT(row(scatter_table(tasks_of(read())[0]), "CNN"), ElementsAre("CNN", "none", "0.3", "9", "2"));
+}
 /// Results with training on 1/8 to all of the rows; the MSE falls with the square root of the rows and is
 /// 0.54 with all rows.
 void write_sizes(const std::function<void(const std::string&, const json&)>& write) {
@@ -249,35 +286,17 @@ void write_sizes(const std::function<void(const std::string&, const json&)>& wri
     write(std::to_string(share), r);
   }
 }
-TEST_F(TablesTest, FitsPowerLawToTrainingSizes) {
+TEST_F(TablesTest, ListsTrainingSizes) {
   write_sizes([&](const auto& name, const auto& r) { write(name, r); });
   const auto series = scaling_series(read());
   ASSERT_EQ(series.size(), 1u);
   ASSERT_EQ(series[0].sizes.size(), 4u);
   EXPECT_EQ(series[0].sizes.front().core_seconds, 12.5);
   EXPECT_THAT(series[0].name(), HasSubstr("CNN, without #30"));
-  const auto law = series[0].by_rows();
-  ASSERT_TRUE(law);
-  EXPECT_NEAR(law->exponent(), -0.5, 1e-9);
-  EXPECT_NEAR(law->reaches(0.054), 400'000, 1);
   EXPECT_EQ(group_results(read()).size(), 1u);
   const auto report = make_tables(read(), {});
-  EXPECT_THAT(report.markdown,
-              AllOf(HasSubstr("](tables/V-scaling.svg)"), HasSubstr("|  | CNN, without #30 |"),
-                    HasSubstr("| training rows | 500 – 4000 |"), HasSubstr("0.54 (0.1) ¹")));
-}
-TEST(PowerLawTest, IntervalsUseStudentsDistribution) {
-  // ln y = 1, 2, 4 at ln x = 0, 1, 2: exponent 1.5, scatter sqrt(1/6), Student's quantile 12.706
-  const double e = std::exp(1.0);
-  const PowerLaw law({{1, e}, {e, e * e}, {e * e, std::exp(4.0)}});
-  EXPECT_NEAR(law.exponent(), 1.5, 1e-12);
-  EXPECT_NEAR(law.exponent_interval().second - 1.5, 12.706204736174694 * std::sqrt(1.0 / 6 / 2), 1e-9);
-  EXPECT_NEAR(std::log(law.interval(e).second / law.at(e)), 12.706204736174694 * std::sqrt(1.0 / 6 / 3),
-              1e-9);
-  EXPECT_FALSE(law.reaches_interval(1.0));  // an exponent of 0 cannot be ruled out
-  const PowerLaw exact({{1, 8}, {10, 4}, {100, 2}, {1000, 1}});
-  ASSERT_TRUE(exact.reaches_interval(0.5));
-  EXPECT_NEAR(exact.reaches_interval(0.5)->second, 10'000, 1e-3);
+  EXPECT_THAT(report.markdown, AllOf(HasSubstr("](tables/V-scaling.svg)"),
+                                     HasSubstr("| CNN, without #30 | 500 | "), HasSubstr("0.54 (0.1) ¹")));
 }
 TEST_F(TablesTest, PlotsAreFilesForMarkdownAndInlineInHtml) {
   json r = result("V", "cnn", 30, 0.1);

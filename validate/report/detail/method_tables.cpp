@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <span>
 
 #include "validate/report/detail/thesis_tables.hpp"
 
@@ -28,17 +27,6 @@ double shade_of(const Task& task, const Of& of, const Figure& f) {
   if (of.generator != kAnyGenerator)
     if (const auto* cell = thesis_cell(task.table, of.method, of.generator)) good = cell->mse;
   return shade(f.mse, good.value_or(f.baseline * kGoodRelative), f.baseline);
-}
-
-Cell figure_cell(const Task& task, const Of& of, const char* otherwise) {
-  const auto f = figure_of(task, of);
-  if (!f) return otherwise;
-  std::string text = shown(f->mse);
-  if (f->seeds > 1) text += fmt::format(" ± {:.2g}", f->standard_deviation);
-  text += fmt::format(" ({:.2g}", f->ratio);
-  if (f->over_floor) text += fmt::format("; {:.3g} × floor", *f->over_floor);
-  text += f->seeds == 1 ? ") ¹" : f->seeds == 2 ? ") ²" : ")";
-  return {text, of.method == "floor" ? -1 : shade_of(task, of, *f)};
 }
 
 /// Returns the methods with runs at a noise level.
@@ -64,22 +52,6 @@ std::string range(double low, double high) {
   return low == high ? fmt::format("{:.0f}", low) : fmt::format("{:.0f} – {:.0f}", low, high);
 }
 
-/// Returns the cell of the task's best network.
-Cell best_network(const Task& task, double noise) {
-  std::optional<double> least;
-  std::string best;
-  for (const auto& m : methods_at(task, noise)) {
-    const auto f = figure_of(task, {m, noise});
-    if (runs_of(task, {m, noise}).front()->epochs == 0 || (least && f->mse >= *least)) continue;
-    least = f->mse;
-    best = m;
-  }
-  if (best.empty()) return "–";
-  Cell cell = figure_cell(task, {best, noise}, "–");
-  cell.text = method_name(best) + " " + cell.text;
-  return cell;
-}
-
 /// Returns whether the thesis has a figure of this method in the table.
 bool has_thesis_figure(const Task& task, const std::string& method) {
   return method == "curve-fit" || std::ranges::any_of(kThesisCells, [&](const ThesisCell& cell) {
@@ -87,58 +59,17 @@ bool has_thesis_figure(const Task& task, const std::string& method) {
          });
 }
 
-bool of_thesis(const Task& task) {
-  return std::ranges::find(kThesisTables, task.table, &ThesisTable::number) != kThesisTables.end();
-}
-
-Table overview_of(std::span<const Task> tasks, std::string title) {
-  constexpr double kNoise = 0.001;
-  const std::string noisy = ", " + level_name(kNoise);
-  Table table{std::move(title),
-              {""},
-              {{"thesis's best"},
-               {"predict-the-mean"},
-               {"best network"},
-               {"closed form"},
-               {"refined"},
-               {"best network" + noisy},
-               {"refined" + noisy},
-               {"floor" + noisy}}};
-  for (const Task& task : tasks) {
-    table.header.push_back(fmt::format("{}, {}", task.table, task.preset));
-    const auto thesis = thesis_mean(task, task.table == "IV" ? "gru" : "cnn");
-    const std::vector<Cell> column = {thesis ? shown(*thesis) : "–",
-                                      shown(baseline_of(task)),
-                                      best_network(task, 0),
-                                      figure_cell(task, {"closed-form", 0}, "–"),
-                                      figure_cell(task, {"refined", 0}, "–"),
-                                      best_network(task, kNoise),
-                                      figure_cell(task, {"refined", kNoise}, "–"),
-                                      figure_cell(task, {"floor", kNoise}, "–")};
-    for (std::size_t i = 0; i < column.size(); ++i) table.rows[i].push_back(column[i]);
-  }
-  std::erase_if(table.rows, [](const std::vector<Cell>& row) {
-    return std::all_of(row.begin() + 1, row.end(), [](const Cell& c) { return c.text == "–"; });
-  });
-  return table;
-}
-
 }  // namespace
 
-std::vector<Table> overview_tables(const std::vector<Task>& tasks) {
-  constexpr std::size_t kWide = 3;  // columns that fit a page
-  const auto others = std::ranges::find_if_not(tasks, of_thesis);
-  std::vector<Table> tables;
-  std::string title = kCellMeaning;
-  const auto add = [&](std::span<const Task> part) {
-    for (; !part.empty(); part = part.subspan(std::min(part.size(), kWide))) {
-      tables.push_back(overview_of(part.first(std::min(part.size(), kWide)), title));
-      title = "Cells as in the first table.";
-    }
-  };
-  add({tasks.begin(), others});
-  add({others, tasks.end()});
-  return tables;
+Cell figure_cell(const Task& task, const Of& of, const char* otherwise) {
+  const auto f = figure_of(task, of);
+  if (!f) return otherwise;
+  std::string text = shown(f->mse);
+  if (f->seeds > 1) text += fmt::format(" ± {:.2g}", f->standard_deviation);
+  text += fmt::format(" ({:.2g}", f->ratio);
+  if (f->over_floor) text += fmt::format("; {:.3g} × floor", *f->over_floor);
+  text += f->seeds == 1 ? ") ¹" : f->seeds == 2 ? ") ²" : ")";
+  return {text, of.method == "floor" ? -1 : shade_of(task, of, *f)};
 }
 
 Table method_table(const Task& task) {
@@ -269,9 +200,35 @@ Table several_table(const Task& task) {
   return table;
 }
 
+Table scatter_table(const Task& task) {
+  Table table{
+      "Single test rows: median of their raw MSE (mean over runs), largest, and share of rows whose MSE is not below "
+      "that of predict-the-mean.",
+      {"method", "noise", "median", "largest", "failed [%]"},
+      {}};
+  for (const auto& method : task.methods())
+    for (const double level : task.levels()) {
+      RowScatter all;
+      double runs = 0;
+      for (const auto* r : runs_of(task, {method, level})) {
+        if (!r->scatter || method == "floor") continue;
+        all.median += r->scatter->median;
+        all.worst = std::max(all.worst, r->scatter->worst);
+        all.failed += r->scatter->failed;
+        ++runs;
+      }
+      if (runs > 0)
+        table.rows.push_back({method_name(method), level > 0 ? fmt::format("{:g} %", 100 * level) : "none",
+                              shown(all.median / runs), shown(all.worst),
+                              fmt::format("{:.3g}", 100 * all.failed / runs)});
+    }
+  return table;
+}
+
 Table effort_table(const Task& task) {
   Table table{"Computing cost: rows and epochs of a run; processor time of all runs.",
-              {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]"},
+              {"method", "noise", "runs", "seeds", "training rows", "test rows", "epochs", "time [core-s]",
+               "software"},
               {}};
   for (const auto& method : task.methods())
     for (const double level : task.levels()) {
@@ -281,8 +238,13 @@ Table effort_table(const Task& task) {
       const auto [test_low, test_high] = std::ranges::minmax(runs, {}, &RunResult::test_rows);
       const auto [epochs_low, epochs_high] = std::ranges::minmax(runs, {}, &RunResult::epochs);
       std::set<std::int64_t> seeds;
+      std::set<std::string> software;
       double seconds = 0;
-      for (const auto* r : runs) seeds.insert(r->seed), seconds += r->core_seconds;
+      for (const auto* r : runs) {
+        seeds.insert(r->seed);
+        software.insert(r->software + (r->stale ? " (stale)" : ""));
+        seconds += r->core_seconds;
+      }
       const bool trained = epochs_high->epochs > 0;
       const auto of = [](std::int64_t low, std::int64_t high) {
         return range(static_cast<double>(low), static_cast<double>(high));
@@ -291,7 +253,8 @@ Table effort_table(const Task& task) {
                             std::to_string(runs.size()), fmt::format("{}", fmt::join(seeds, ", ")),
                             trained ? of(train_low->train_rows, train_high->train_rows) : "not trained",
                             of(test_low->test_rows, test_high->test_rows),
-                            trained ? of(epochs_low->epochs, epochs_high->epochs) : "–", shown(seconds)});
+                            trained ? of(epochs_low->epochs, epochs_high->epochs) : "–", shown(seconds),
+                            fmt::format("{}", fmt::join(software, "; "))});
     }
   return table;
 }

@@ -11,9 +11,8 @@ inline constexpr const char* kCellMeaning =
     "there is one, to the floor (the Bayesian Cramér-Rao bound, averaged over the prior; the MSE over a finite set "
     "of test events scatters around it, so ratios below 1 occur). ¹ one seed, ² two seeds.";
 
-/// Overview tables with at most three tasks as columns, the thesis's tables first. Rows: the thesis,
-/// predict-the-mean, the best network, methods without training, and the floor.
-std::vector<Table> overview_tables(const std::vector<Task>& tasks);
+/// Cell of a method: mean error with its ratios, as kCellMeaning explains; `otherwise` without runs.
+Cell figure_cell(const Task& task, const Of& of, const char* otherwise);
 /// One row per method, one column per noise level, and the figures of the thesis's own methods.
 Table method_table(const Task& task);
 /// One row per excluded generator, one column per method, at one noise level.
@@ -26,6 +25,8 @@ Table unseen_table(const Task& task, double noise);
 Table parameter_comparison(const Task& task, double noise);
 /// Errors of estimates from several records of the same plant. No rows if no plant has three records.
 Table several_table(const Task& task);
+/// Median and largest MSE of single test rows, and share of failed rows. No rows without such results.
+Table scatter_table(const Task& task);
 /// Table of training rows, epochs and processor time.
 Table effort_table(const Task& task);
 /// Sentence "MSE lower than in the thesis (noise-free): closed form at 10 of 10 generators. Higher: CNN."

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 #include <tuple>
 
 #include "validate/report/detail/summary.hpp"
-#include "validate/report/detail/thesis_tables.hpp"
 #include "validate/report/plot.hpp"
 
 namespace swingbank::validate::report {
@@ -53,64 +51,15 @@ std::set<int> common(const RunsOfSize& sizes) {
   return all;
 }
 
-std::optional<PowerLaw> law(const std::vector<Size>& sizes, double Size::*of) {
-  if (sizes.size() < kLeastSizes) return std::nullopt;
-  std::vector<std::pair<double, double>> points;
-  for (const auto& s : sizes) points.emplace_back(s.*of, s.mse);
-  return PowerLaw(points);
-}
-
-std::string with_interval(double value, const std::optional<Interval>& interval) {
-  if (!interval) return shown(value) + " (not bounded)";
-  return fmt::format("{} ({} to {})", shown(value), shown(interval->first), shown(interval->second));
-}
-
-std::optional<double> thesis_of(const ScalingSeries& s) {
-  double sum = 0, count = 0;
-  const auto take = [&](int g) {
-    if (const auto* cell = thesis_cell(s.table, s.network, g)) sum += cell->mse, ++count;
-  };
-  for (const int g : s.generators) take(g);
-  if (s.generators.empty()) take(0);
-  return count > 0 ? std::optional(sum / count) : std::nullopt;
-}
-
 PlotSeries points_of(const ScalingSeries& s, double Size::*of, const std::string& colour) {
   PlotSeries all{s.name(), colour};
+  all.line = true;
   for (const auto& size : s.sizes) {
     all.points.emplace_back(size.*of, size.mse);
     all.reach.emplace_back(size.low, size.high);
   }
   return all;
 }
-PlotSeries law_of(const ScalingSeries& s, double Size::*of, const PowerLaw& fitted,
-                  const std::string& colour) {
-  PlotSeries line{"", colour};
-  line.mark = PlotSeries::Mark::none;
-  line.line = line.dashed = true;
-  const auto [least, most] = std::ranges::minmax(s.sizes, {}, of);
-  const double from = least.*of, to = most.*of;
-  for (int i = 0; i <= 24; ++i) {
-    const double x = from * std::pow(to / from, i / 24.0);
-    const auto [low, high] = fitted.interval(x);
-    line.points.emplace_back(x, fitted.at(x));
-    line.band.push_back({x, low, high});
-  }
-  return line;
-}
-
-/// Returns a table of the given columns, with the header of `table` as first column.
-Table turned(Table table, const std::vector<std::vector<Cell>>& columns) {
-  Table out{std::move(table.caption), {table.header.front()}, {}};
-  for (const auto& column : columns) out.header.push_back(column.front().text);
-  for (std::size_t i = 1; i < table.header.size(); ++i) {
-    std::vector<Cell> row = {table.header[i]};
-    for (const auto& column : columns) row.push_back(column[i]);
-    out.rows.push_back(std::move(row));
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string ScalingSeries::name() const {
@@ -120,8 +69,6 @@ std::string ScalingSeries::name() const {
   if (generators.size() > 1) text += fmt::format(", {} generators", generators.size());
   return text;
 }
-std::optional<PowerLaw> ScalingSeries::by_rows() const { return law(sizes, &Size::rows); }
-std::optional<PowerLaw> ScalingSeries::by_time() const { return law(sizes, &Size::core_seconds); }
 
 std::vector<ScalingSeries> scaling_series(const std::vector<RunResult>& results) {
   std::map<std::tuple<std::string, std::string, double>, RunsOfSize> groups;
@@ -149,45 +96,18 @@ std::vector<ScalingSeries> scaling_series(const std::vector<RunResult>& results)
 
 Table scaling_table(const std::vector<ScalingSeries>& series) {
   Table table{
-      "Power law MSE ∝ N^b (N training rows), log-log regression, 95 % confidence intervals; values beyond the largest "
-      "N are extrapolated. Core-hours: one network, at the time per row measured at the largest N.",
-      {"", "sizes", "training rows", "exponent b of the rows", "exponent of the time",
-       "MSE at the thesis's training rows", "core-hours for these rows", "the thesis's MSE",
-       "training rows required", "core-hours for these rows"},
+      "Raw MSE of runs with different numbers of training rows: mean over seeds, with their range. The number of "
+      "optimiser steps is proportional to rows times epochs.",
+      {"network", "training rows", "epochs", "processor time [s]", "MSE"},
       {}};
-  std::vector<std::vector<Cell>> columns;
-  for (const auto& s : series) {
-    const Size &least = s.sizes.front(), &most = s.sizes.back();
-    std::vector<Cell> row = {s.name(), std::to_string(s.sizes.size()),
-                             fmt::format("{:.0f} – {:.0f}", least.rows, most.rows)};
-    const auto rows = s.by_rows(), time = s.by_time();
-    const auto at = std::ranges::find(kThesisTables, s.table, &ThesisTable::number);
-    const double hours_of_row = most.core_seconds / most.rows / 3600;
-    if (rows && time) {
-      row.emplace_back(with_interval(rows->exponent(), rows->exponent_interval()));
-      row.emplace_back(with_interval(time->exponent(), time->exponent_interval()));
-    } else {
-      row.insert(row.end(), {"too few sizes", "too few sizes"});
+  for (const auto& s : series)
+    for (const auto& size : s.sizes) {
+      std::string mse = shown(size.mse);
+      if (size.low < size.high) mse += fmt::format(" ({} to {})", shown(size.low), shown(size.high));
+      table.rows.push_back(
+          {s.name(), fmt::format("{:.0f}", size.rows), shown(size.epochs), shown(size.core_seconds), mse});
     }
-    if (rows && at != kThesisTables.end()) {
-      row.emplace_back(with_interval(rows->at(at->train_rows), rows->interval(at->train_rows)));
-      row.emplace_back(shown(hours_of_row * at->train_rows));
-    } else {
-      row.insert(row.end(), {"–", "–"});
-    }
-    const auto thesis = thesis_of(s);
-    row.emplace_back(thesis ? shown(*thesis) : "–");
-    if (thesis && most.mse <= *thesis) {
-      row.insert(row.end(), {"reached", "–"});
-    } else if (thesis && rows && rows->exponent() < 0) {
-      row.emplace_back(with_interval(rows->reaches(*thesis), rows->reaches_interval(*thesis)));
-      row.emplace_back(shown(hours_of_row * rows->reaches(*thesis)));
-    } else {
-      row.insert(row.end(), {"–", "–"});
-    }
-    columns.push_back(std::move(row));
-  }
-  return turned(std::move(table), columns);
+  return table;
 }
 
 std::string scaling_picture(const std::vector<ScalingSeries>& series) {
@@ -196,10 +116,6 @@ std::string scaling_picture(const std::vector<ScalingSeries>& series) {
   rows.width = time.width = 330;
   for (std::size_t i = 0; i < series.size(); ++i) {
     const auto colour = plot_colour(i);
-    if (const auto law = series[i].by_rows())
-      rows.series.push_back(law_of(series[i], &Size::rows, *law, colour));
-    if (const auto law = series[i].by_time())
-      time.series.push_back(law_of(series[i], &Size::core_seconds, *law, colour));
     rows.series.push_back(points_of(series[i], &Size::rows, colour));
     time.series.push_back(points_of(series[i], &Size::core_seconds, colour));
   }

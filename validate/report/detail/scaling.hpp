@@ -1,10 +1,8 @@
 #pragma once
-// Scaling laws of a network's error against training rows and processor time.
-#include <optional>
+// Error of a network against training rows and processor time.
 #include <string>
 #include <vector>
 
-#include "validate/report/detail/power_law.hpp"
 #include "validate/report/document.hpp"
 #include "validate/report/run_result.hpp"
 
@@ -22,17 +20,14 @@ struct ScalingSeries {
   std::vector<int> generators;  ///< excluded at all sizes; empty: none was excluded
   std::vector<Size> sizes;      ///< sorted by rows
   [[nodiscard]] std::string name() const;
-  /// Error against training rows and against processor time; none with fewer sizes than kLeastSizes.
-  [[nodiscard]] std::optional<PowerLaw> by_rows() const;
-  [[nodiscard]] std::optional<PowerLaw> by_time() const;
 };
-/// Minimum number of sizes: for a power law, and for a plot.
-inline constexpr std::size_t kLeastSizes = 4, kSizesToDraw = 3;
+/// Minimum number of sizes.
+inline constexpr std::size_t kSizesToDraw = 3;
 
 /// Series with at least kSizesToDraw sizes, from all trained runs except control runs and runs with
 /// --judge-on.
 std::vector<ScalingSeries> scaling_series(const std::vector<RunResult>& results);
-/// Table of exponents, of the error at the thesis's number of rows, and of the rows for the thesis's error.
+/// Table with rows, epochs, processor time and error of each size.
 Table scaling_table(const std::vector<ScalingSeries>& series);
 std::string scaling_picture(const std::vector<ScalingSeries>& series);
 
