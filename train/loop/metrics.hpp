@@ -24,8 +24,8 @@ struct Score {
   double mse_varied_only = 0.0, baseline_mse_varied_only = 0.0;  ///< over the parameters that vary in the box
   double ratio = 0.0;                                            ///< mse / baseline_mse
   std::optional<double> H_ratio;                                 ///< ratio of H alone; none without H
-  /// Over the rows' own MSE (mean over the parameters): median, largest, and share of rows whose MSE is not below
-  /// baseline_mse.
+  /// Over the rows' own MSE (mean over the parameters): median, largest, and share of rows whose MSE is not
+  /// below baseline_mse.
   double median_row = 0.0, worst_row = 0.0, failed_rows = 0.0;
 };
 
