@@ -46,6 +46,14 @@ if [[ -z $experiment ]]; then
   echo "experiment missing at --experiment (it is required): give a file of configs/experiments" >&2
   exit 1
 fi
+if [[ -n $seconds && ! $seconds =~ ^[1-9][0-9]*$ ]]; then
+  echo "no time at --seconds $seconds (it must be a whole number of seconds above 0): give one like 3600" >&2
+  exit 1
+fi
+if [[ ! $any_maker =~ ^[01]$ ]]; then
+  echo "no switch at --any-maker $any_maker (it must be 0 or 1): give one of these" >&2
+  exit 1
+fi
 out=$(realpath -m "${out:-$source_folder/out/$(basename "$experiment" .toml)-$preset}")
 swingbank=$build/bin/swingbank
 if [[ ! -x $swingbank ]]; then

@@ -84,6 +84,9 @@ flock 8
 refuses "double run" "$out" night 2026-02-03 "$work/tiny.toml"
 exec 8>&-
 refuses "no date" '--date tomorrow' night tomorrow "$work/tiny.toml"
+experiment=(bash "$SWINGBANK_SOURCE/jobs/run_experiment.sh" --experiment "$work/tiny.toml")
+refuses "no seconds" '--seconds soon' "${experiment[@]}" --seconds soon
+refuses "no switch" '--any-maker yes' "${experiment[@]}" --any-maker yes
 refuses "no hours" '--hours none' night 2026-02-03 --hours none "$work/tiny.toml"
 
 sed 's/^epochs = .*/epochs = "many"/' "$work/tiny.toml" >"$work/wrong.toml"
