@@ -2,12 +2,13 @@
 # Runs one experiment from its config to its tables; finished parts are skipped. The quickstart, the
 # nightly benchmark and the Slurm jobs use this script.
 #   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
-#                               [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER] [--seconds N]
+#                               [--network NAME] [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER] [--seconds N]
 #                               [--any-maker 0|1]
 #     --stage     check, databank, generate, train, tables, or all (default: all); count-tasks prints the number of
 #                 tasks of the stage train: one per combination of network, noise level and fold, and one per
 #                 combination of network and share of the training rows
 #     --task      number of the only task of the stage train to run, from 0
+#     --network   the only network or method of the stage train (default: all)
 #     --seed      seed of the training (default 1)
 #     --ranks     number of MPI processes that generate (default: one per core)
 #     --launcher  command that starts these processes (default mpirun)
@@ -21,7 +22,7 @@ set -euo pipefail
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 experiment=${SWINGBANK_EXPERIMENT:-} preset=${SWINGBANK_PRESET:-quick} out=${SWINGBANK_OUT:-}
 build=${SWINGBANK_BUILD:-$source_folder/build/release}
-stage=all task='' seed=1 ranks=$(nproc) launcher=mpirun seconds='' any_maker=0
+stage=all task='' network='' seed=1 ranks=$(nproc) launcher=mpirun seconds='' any_maker=0
 # shellcheck source=jobs/run_saving.bash
 source "$source_folder/jobs/run_saving.bash"
 while (($#)); do
@@ -31,13 +32,14 @@ while (($#)); do
     --out) out=${2:?} ;;
     --stage) stage=${2:?} ;;
     --task) task=${2:?} ;;
+    --network) network=${2:?} ;;
     --seed) seed=${2:?} ;;
     --ranks) ranks=${2:?} ;;
     --launcher) launcher=${2:?} ;;
     --build) build=${2:?} ;;
     --seconds) seconds=${2:?} ;;
     --any-maker) any_maker=${2:?} ;;
-    -h | --help) sed -n '2,18p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,19p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (jobs/run_experiment.sh has no such option): run it with --help" >&2; exit 1 ;;
   esac
   shift 2
@@ -139,6 +141,10 @@ run_task() {
 train() {
   local all lines line
   all=$(ask tasks)
+  if [[ -n $network ]] && ! all=$(grep "^$network " <<<"$all"); then
+    echo "no such network at --network $network (the preset has: $(ask tasks | cut -d' ' -f1 | uniq | xargs)): give one" >&2
+    return 1
+  fi
     # If all tasks run here, one process trains all folds of a network, so that the dataset is read once.
   if [[ -z $task ]]; then all=$(sed -E 's/^([^ ]+ [^ ]+) [0-9]+$/\1 all/' <<<"$all" | uniq); fi
   mapfile -t lines <<<"$all"

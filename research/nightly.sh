@@ -41,7 +41,7 @@ while (($#)); do
     --tests) tests=${2:?--tests needs 0 or 1}; shift 2 ;;
     --fuzz) fuzz=${2:?--fuzz needs seconds}; shift 2 ;;
     --blind) blind=${2:?--blind needs a number of cases}; shift 2 ;;
-    -h | --help) sed -n '2,22p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,21p' "$0"; exit 0 ;;
     -*) echo "unknown option at '$1' (research/nightly.sh has no such option): run it with --help" >&2; exit 1 ;;
     *) experiments+=("$(realpath -m "$1")"); shift ;;
   esac
