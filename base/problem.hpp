@@ -49,6 +49,10 @@ class Problems {
   void add(std::string what, std::string where, std::string why, std::string remedy) {
     list_.push_back({std::move(what), std::move(where), std::move(why), std::move(remedy)});
   }
+  /// Adds all problems of an exception.
+  void add(const InputError& error) {
+    list_.insert(list_.end(), error.problems().begin(), error.problems().end());
+  }
   /// Adds all problems of another collector.
   void add(const Problems& other) { list_.insert(list_.end(), other.list_.begin(), other.list_.end()); }
   /// Whether no problem was added.

@@ -131,8 +131,16 @@ struct AnalysisOptions {
   /// invalid.
   validate::plant::PlantModel load_model(bool to_fit) {
     using namespace validate;
-    plant::PlantModel loaded = plant::load_plant_model(
-        model, std::vector<std::filesystem::path>(user_model_files.begin(), user_model_files.end()));
+    plant::PlantModel loaded;
+    try {
+      loaded = plant::load_plant_model(
+          model, std::vector<std::filesystem::path>(user_model_files.begin(), user_model_files.end()));
+    } catch (const InputError& error) {
+      Problems problems;  // with those of the records, as far as they show without the model's base
+      problems.add(error);
+      for (const auto& named : records) record::check_files(record::Source(named), problems);
+      problems.raise();
+    }
     for (const auto& file : user_model_files)
       user_models.emplace_back(
           file, &sim::user_models::load_user_model(std::filesystem::path(file), loaded.library));

@@ -47,7 +47,7 @@ struct Judging {
     try {
       by = validate::thresholds::read_acceptance(accept.empty() ? standard : accept);
     } catch (const InputError& error) {
-      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+      problems.add(error);
     }
     if (!pdf.empty()) browser_for(pdf, problems);
     problems.raise();

@@ -67,7 +67,7 @@ class Merge {
       try {
         add_line(folder, line, journal);
       } catch (const InputError& e) {
-        for (const auto& p : e.problems()) problems_.add(p.what, p.where, p.why, p.remedy);
+        problems_.add(e);
       }
       done();
     }

@@ -83,7 +83,7 @@ Coverage take_coverage(const std::vector<std::filesystem::path>& dyr_files) {
   for (const auto& file : dyr_files) try {
       taker.read(file);
     } catch (const InputError& error) {
-      for (const Problem& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+      problems.add(error);
     }
   problems.raise();
   return taker.end();

@@ -62,7 +62,7 @@ Grid load_grid(const std::filesystem::path& raw, const std::filesystem::path& dy
     try {
       read();
     } catch (const InputError& error) {
-      for (const Problem& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+      problems.add(error);
     }
   };
   collect([&] { network = formats::read_network(raw, options.raw); });

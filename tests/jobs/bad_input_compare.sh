@@ -16,6 +16,7 @@ find "${out:?}" -mindepth 1 -delete
 
 refuses "no such plant" "$work/none.toml" compare "$work/none.toml" "$record"
 refuses "no such record" "$work/none.csv" compare "$model" "$work/none.csv"
+refuses "no such plant and record" "$work/none.csv" compare "$work/none.toml" "$work/none.csv"
 refuses "plant that is no TOML" 'avr_ev1.csv' compare "$record" "$record"
 
 line=$(grep -n '^H *=' "$model" | cut -d: -f1)

@@ -43,7 +43,7 @@ ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe,
     try {
       load(shard, fits);
     } catch (const InputError& e) {
-      for (const auto& p : e.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+      problems.add(e);
     }
   }
   problems.raise();

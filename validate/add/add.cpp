@@ -222,7 +222,7 @@ std::vector<std::string> canonical_names(const plant::PlantModel& model,
     try {
       names.push_back(known.contains(name) ? known[name] : find_hypothesis(with, name, records).name);
     } catch (const InputError& e) {
-      for (const Problem& p : e.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+      problems.add(e);
     }
   }
   std::ranges::sort(names);

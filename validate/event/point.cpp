@@ -68,7 +68,7 @@ void read_model(const std::filesystem::path& file, OtherUnit& unit, Problems& pr
   try {
     unit.model = plant::load_plant_model(file);
   } catch (const InputError& error) {
-    for (const Problem& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    problems.add(error);
   }
 }
 

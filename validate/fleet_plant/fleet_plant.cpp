@@ -59,7 +59,7 @@ Loaded load(const Fleet& fleet, const FleetPlant& plant) {
   try {
     l.model = plant::as_submitted(plant::load_plant_model(plant.model));
   } catch (const InputError& error) {
-    for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+    problems.add(error);
   }
   for (const auto& text : plant.records)
     for (auto& file : matching(text, fleet.folder, problems)) l.files.push_back(std::move(file));

@@ -56,7 +56,7 @@ Record read_parts(const Source& source, const RecordBase& base, const ReadOption
       records.push_back(read_file(file, base, part));
       bytes += records.back().sha256;
     } catch (const InputError& error) {
-      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+      problems.add(error);
     }
   }
   problems.raise();
@@ -70,6 +70,15 @@ Record read_parts(const Source& source, const RecordBase& base, const ReadOption
 
 std::string read_bytes(const std::filesystem::path& file) {
   return read_input(file, "cannot read the record", "give the path of a record");
+}
+
+void check_files(const Source& source, Problems& problems) {
+  for (const SourceFile& part : source.files)
+    for (const auto& file : part.all_files()) try {
+        read_bytes(file);
+      } catch (const InputError& error) {
+        problems.add(error);
+      }
 }
 
 std::string_view component_name(Component component) {

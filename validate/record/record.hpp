@@ -166,6 +166,9 @@ struct ReadOptions {
 /// than kLongestGap, and times that do not increase or are unevenly spaced.
 Record read_record(const Source& source, const RecordBase& base, const ReadOptions& options = {});
 
+/// Adds a problem for each file of a record that cannot be read. Its content is not checked.
+void check_files(const Source& source, Problems& problems);
+
 /// Reads a record, with the staged events that apply to the file. If the breaker is open during the whole
 /// record, P and Q are not required.
 Record read_staged(const Source& source, const RecordBase& base, ReadOptions options);

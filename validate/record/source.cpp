@@ -24,7 +24,14 @@ std::filesystem::path partner(std::filesystem::path file, const char* lower, con
   return std::filesystem::exists(other) ? other : same;
 }
 
-/// Splits "event.plb+meter.csv" into the files of one event, unless it is one file's name.
+/// Returns the file of "file#terminal"; the whole name if it has no '#'.
+std::filesystem::path before_terminal(const std::filesystem::path& named) {
+  const std::string text = named.string();
+  return text.substr(0, text.rfind('#'));
+}
+
+/// Splits "event.plb+meter.csv" into the files of one event, unless it is one file's name. If none of the
+/// files exists, the name is not split either, so that the message about it has the whole name.
 std::vector<std::filesystem::path> parts_of(const std::filesystem::path& named) {
   if (std::filesystem::exists(named)) return {named};
   std::vector<std::filesystem::path> parts;
@@ -34,6 +41,10 @@ std::vector<std::filesystem::path> parts_of(const std::filesystem::path& named) 
     if (end > at) parts.emplace_back(text.substr(at, end - at));
     at = end + 1;
   }
+  const auto exists = [](const std::filesystem::path& part) {
+    return std::filesystem::exists(part) || std::filesystem::exists(before_terminal(part));
+  };
+  if (std::ranges::none_of(parts, exists)) return {named};
   return parts;
 }
 
@@ -52,12 +63,11 @@ SourceFile source_file(const std::filesystem::path& named) {
   SourceFile file;
   file.path = named;
   file.name = named.filename().string();
-  const std::string text = named.string();
-  const auto at = text.rfind('#');
-  if (at != std::string::npos && at > 0 &&
-      !std::filesystem::exists(named)) {  // otherwise '#' is part of the file's name
-    file.path = text.substr(0, at);
-    file.terminal = text.substr(at + 1);
+  const std::filesystem::path before = before_terminal(named);
+  // Otherwise '#' is part of the file's name, or neither file exists.
+  if (!std::filesystem::exists(named) && std::filesystem::exists(before)) {
+    file.path = before;
+    file.terminal = named.string().substr(before.string().size() + 1);
   }
   const std::string e = extension(file.path);
   if (e == ".cfg" || e == ".dat") {
@@ -103,9 +113,7 @@ Source::Source(const std::filesystem::path& named) : path(named) {
 }
 
 bool Source::is_named(const std::string& record) const {
-  const std::string named = path.string();
-  const std::filesystem::path whole = named.substr(0, named.rfind('#'));
-  return record == whole.filename().string() || record == path.filename().string();
+  return record == before_terminal(path).filename().string() || record == path.filename().string();
 }
 
 }  // namespace swingbank::validate::record

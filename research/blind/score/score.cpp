@@ -225,7 +225,7 @@ BlindScore score_blind(const fs::path& run, const fs::path& targets) {
       count_conditions(c, score);
       score.cases.push_back(std::move(c));
     } catch (const InputError& error) {
-      for (const auto& p : error.problems()) problems.add(p.what, p.where, p.why, p.remedy);
+      problems.add(error);
     }
   }
   problems.raise();

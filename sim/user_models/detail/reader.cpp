@@ -334,7 +334,7 @@ Definition Reader::read() {
     try {
       config_.raise();
     } catch (const InputError& e) {
-      for (const Problem& p : e.problems()) problems_.add(p.what, p.where, p.why, p.remedy);
+      problems_.add(e);
     }
     problems_.raise();
     finish();

@@ -63,6 +63,12 @@ TEST(RecordTest, UnitsAreInTheNames) {
   EXPECT_THAT(r.ignored, ElementsAre("status"));
 }
 
+TEST(RecordTest, MissingFileIsNamedWhole) {
+  for (const char* name : {"gone#1.csv", "gone+other.csv"})
+    EXPECT_THAT(test::messages([&] { read_record(name, {}); }),
+                ElementsAre(HasSubstr(std::string(name) + " (")));
+}
+
 TEST(RecordTest, HashCoversTheBytes) {
   EXPECT_NE(parse_record(sound(), "a", {}).sha256, parse_record(sound(41), "a", {}).sha256);
 }
