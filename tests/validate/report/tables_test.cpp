@@ -256,7 +256,10 @@ TEST_F(TablesTest, OverviewSelectsAmongPresets) {
   write("many", many);
   write("many_39", many_39);
   write("steps", steps);
+  write("IV", result("IV", "mlp", 0, 0.01));
   const Table table = overview_table(tasks_of(read()));
+  EXPECT_THAT(row(table, "IV, no noise"),
+              ElementsAre("IV, no noise", "0.0079", "–", "MLP 0.054 (0.01) ¹, 4000 × 20", "–", "–", "–"));
   EXPECT_THAT(row(table, "V, mean, no noise"),
               ElementsAre("V, mean, no noise", "0.0526", "CNN 1.62 (0.3) ¹, 54000 × 20",
                           "CNN 0.54 (0.1) ¹, 4000 × 20", "–", "–", "–"));

@@ -89,7 +89,8 @@ Cell cell_of(const Candidate& c, double noise, int generator) {
 }
 
 std::optional<double> thesis_figure(const Task& task, int generator) {
-  if (generator == kAnyGenerator) return thesis_mean(task, task.table == "IV" ? "gru" : "cnn");
+  if (generator == kAnyGenerator || generator == 0)
+    return thesis_mean(task, task.table == "IV" ? "gru" : "cnn");
   std::optional<double> figure;
   for (const auto& cell : kThesisCells)
     if (cell.table == task.table && (cell.generator == generator || generator == kWorst))
