@@ -64,8 +64,13 @@ if [[ ! -x $swingbank ]]; then
 fi
 
 if [[ -n $seconds ]]; then
-  { sleep "$seconds" && kill -USR1 $$; } 9>&- &
-  trap 'kill %1 2>/dev/null || true' EXIT
+  ( # keeps no output open, and takes its sleep with it
+    trap 'kill $(jobs -p); exit' TERM
+    sleep "$seconds" &
+    wait && kill -USR1 $$
+  ) >/dev/null 2>&1 9>&- &
+  timer=$!
+  trap 'kill $timer 2>/dev/null || true' EXIT
 fi
 
 # ask KEY: prints a property of the experiment, such as dataset, draws or tasks

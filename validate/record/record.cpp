@@ -74,11 +74,13 @@ std::string read_bytes(const std::filesystem::path& file) {
 
 void check_files(const Source& source, Problems& problems) {
   for (const SourceFile& part : source.files)
-    for (const auto& file : part.all_files()) try {
+    for (const auto& file : part.all_files()) {
+      try {
         read_bytes(file);
       } catch (const InputError& error) {
         problems.add(error);
       }
+    }
 }
 
 std::string_view component_name(Component component) {

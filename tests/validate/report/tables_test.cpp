@@ -261,13 +261,14 @@ TEST_F(TablesTest, OverviewSelectsAmongPresets) {
   EXPECT_THAT(row(table, "IV, no noise"),
               ElementsAre("IV, no noise", "0.0079", "–", "MLP 0.054 (0.01) ¹, 4000 × 20", "–", "–", "–"));
   EXPECT_THAT(row(table, "V, mean, no noise"),
-              ElementsAre("V, mean, no noise", "0.0526", "CNN 1.62 (0.3) ¹, 54000 × 20",
-                          "CNN 0.54 (0.1) ¹, 4000 × 20", "–", "–", "–"));
-  EXPECT_THAT(row(table, "V, worst, no noise")[2], "CNN 2.16 (0.4) ¹, #39, 54000 × 20");
-  EXPECT_THAT(row(table, "V, mean, noise 0.1 %")[4], "0.0054 (0.001) ¹, 600");
+              ElementsAre("V, mean, no noise", "0.0526", "CNN 1.62 (0.3) ¹, of 2 of 10 folds, 54000 × 20",
+                          "CNN 0.54 (0.1) ¹, of 1 of 10 folds, 4000 × 20", "–", "–", "–"));
+  EXPECT_THAT(row(table, "V, worst, no noise")[2], "CNN 2.16 (0.4) ¹, #39, of 2 of 10 folds, 54000 × 20");
+  EXPECT_THAT(row(table, "V, mean, noise 0.1 %")[4], "0.0054 (0.001) ¹, of 1 of 10 folds, 600");
   const std::string page = make_tables(read(), {}, "test").markdown;
-  EXPECT_THAT(page, AllOf(HasSubstr("CNN 1.62 (0.3) ¹ stale, 54000 × 20"), HasSubstr("| former (stale) |"),
-                          HasSubstr("CNN 0.54 (0.1) ¹, 4000 × 20"), HasSubstr("| test |")));
+  EXPECT_THAT(page, AllOf(HasSubstr("CNN 1.62 (0.3) ¹ stale, of 2 of 10 folds, 54000 × 20"),
+                          HasSubstr("| former (stale) |"),
+                          HasSubstr("CNN 0.54 (0.1) ¹, of 1 of 10 folds, 4000 × 20"), HasSubstr("| test |")));
 }
 TEST_F(TablesTest, ScatterOfSingleRows) {
   json r = result("V", "cnn", 30, 0.1), other = result("V", "cnn", 31, 0.1);

@@ -82,6 +82,8 @@ Cell cell_of(const Candidate& c, double noise, int generator) {
   const RunResult& run = *runs.front();
   if (std::ranges::any_of(runs, [](const RunResult* r) { return r->stale; })) cell.text += " stale";
   if (generator == kWorst) cell.text += fmt::format(", #{}", of.generator);
+  if (const std::size_t all = c.task->generators().size(); generator < 0 && c.figure.generators < all)
+    cell.text += fmt::format(", of {} of {} folds", c.figure.generators, all);
   cell.text =
       c.trained ? fmt::format("{} {}, {} × {}", method_name(c.method), cell.text, run.train_rows, run.epochs)
                 : fmt::format("{}, {}", cell.text, run.test_rows);
