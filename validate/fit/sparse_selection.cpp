@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "validate/fit/interrupted.hpp"
@@ -52,48 +52,34 @@ class Selection {
     fit_all();
     learn_curvature();
     SparseSelection back;
-    Refit chosen = refit({});
-    back.fit = chosen.fit;
+    back.fit = fit_set({}, predict({}, kExactly));
+    require(back.fit);
     back.events = events_;
     back.before = back.fit.reduced_chi2();
     back.best = all_.reduced_chi2();
     grow();
-    if (hopeless()) return back;
+    const Promise promise = most_promising();
+    if (promise.size == 0 || worth(best_of(promise.size).cost, promise.occam, promise.size) < options_.least)
+      return back;
     Set set;
-    double taken = chosen.cost;
-    for (std::size_t size = 1; size < beams_.size(); ++size) {
-      if (stopped()) return back;
-      if (taken - penalised(all_) < options_.each) break;  // even all parameters would gain too little
-      const auto& [refitted, best] = best_of(size);
-      report(event::Phase::parameter_subsets, size, beams_.size() - 1);
-      // The cost may fall only if two parameters change together. One size without enough gain therefore does
-      // not end the search.
-      if (taken - refitted.cost > options_.each * static_cast<double>(size - set.size())) {
-        taken = refitted.cost;
-        chosen = refitted;
-        set = best;
-      } else if (size >= set.size() + 2) {
-        break;
-      }
-    }
-    drop_idle(set, chosen);
+    if (refit({}).cost - penalised(all_) >= options_.each) set = best_set(promise.size);
+    if (stopped()) return back;
+    drop_idle(set);
     if (set.empty()) return back;
-    while (exchange(set, chosen)) {
+    while (exchange(set)) {
     }
-    std::vector<double> rises = evidence(set, chosen.fit);
+    std::vector<double> rises = evidence(set);
     // A parameter may have been selected only because the unselected ones could move within the tolerance. It
     // is dropped if its evidence is too low with the unselected parameters at their given values.
     for (auto least = std::ranges::min_element(rises); least != rises.end() && *least < options_.each;
          least = std::ranges::min_element(rises)) {
       set = without(set, static_cast<std::size_t>(least - rises.begin()));
-      chosen = refit(set);
-      rises = evidence(set, chosen.fit);
-      as_well_.clear();
+      rises = evidence(set);
     }
     if (set.empty()) return back;
-    chosen = refit(set, true);
-    if (worth(criterion(chosen.fit), 0, set.size()) < options_.least) return back;
-    describe(set, rises, chosen, back);
+    Fit chosen = fit_set(set, predict(set, kExactly), true);
+    if (worth(criterion(chosen), 0, set.size()) < options_.least) return back;
+    describe(set, rises, std::move(chosen), back);
     return back;
   }
   [[nodiscard]] bool stopped() const { return options_.stop && options_.stop(); }
@@ -164,7 +150,6 @@ class Selection {
     beams_ = {{{0, {}}}};
     for (std::size_t size = 1; size <= std::min(options_.most, free_.size()); ++size)
       beams_.push_back(grown(beams_.back()));
-    refitted_.resize(beams_.size());
   }
   /// Returns the best sets that have one parameter more than those of `beam`.
   [[nodiscard]] std::vector<Ranked> grown(const std::vector<Ranked>& beam) const {
@@ -187,20 +172,42 @@ class Selection {
   [[nodiscard]] double worth(double cost, double occam, std::size_t size) const {
     return criterion(all_) - cost - occam - options_.each * static_cast<double>(size);
   }
-  /// Returns whether worth() stays below SparseOptions::least even for the most promising size, after its
-  /// best sets are refitted.
-  [[nodiscard]] bool hopeless() {
-    if (options_.least == -std::numeric_limits<double>::infinity()) return false;
-    double most = -std::numeric_limits<double>::infinity();
+  /// A size of the set, and Prediction::occam of the best set of this size.
+  struct Promise {
     std::size_t size = 0;
-    Prediction best;
+    double occam = 0;
+  };
+  /// Returns the size with the highest predicted worth(); 0 if there are no parameters.
+  [[nodiscard]] Promise most_promising() const {
+    double most = -std::numeric_limits<double>::infinity();
+    Promise best;
     for (std::size_t k = 1; k < beams_.size(); ++k)
       for (std::size_t i = 0; i < std::min(kRefitted, beams_[k].size()); ++i) {
-        Prediction f = predict(beams_[k][i].set);
+        const Prediction f = predict(beams_[k][i].set);
         if (const double its = worth(penalised(all_) + f.excess, f.occam, k); its > most)
-          most = its, size = k, best = std::move(f);
+          most = its, best = {k, f.occam};
       }
-    return size == 0 || worth(best_of(size).first.cost, best.occam, size) < options_.least;
+    return best;
+  }
+  /// Returns the set with the lowest cost plus SparseOptions::each per parameter. The sizes are tried from
+  /// `start` upward and downward. The cost may fall only if two parameters change together, so one size
+  /// without a gain does not end the search.
+  [[nodiscard]] Set best_set(std::size_t start) const {
+    Set set = best_of(start).set;
+    double least = refit(set).cost + options_.each * static_cast<double>(start);
+    std::size_t tried = 1;
+    for (const int step : {1, -1})
+      for (auto size = static_cast<std::ptrdiff_t>(start) + step;
+           size >= 0 && size < std::ssize(beams_) && std::abs(size - std::ssize(set)) <= 2 && !stopped();
+           size += step) {
+        // Larger sets cannot gain more than all parameters.
+        if (step > 0 && refit(set).cost - penalised(all_) < options_.each) break;
+        report(event::Phase::parameter_subsets, ++tried, beams_.size());
+        Ranked best = best_of(static_cast<std::size_t>(size));
+        if (const double cost = best.cost + options_.each * static_cast<double>(size); cost < least)
+          least = cost, set = std::move(best.set);
+      }
+    return set;
   }
   /// Returns the value of a parameter at the predicted optimum.
   [[nodiscard]] double predicted_value(const Prediction& there, std::size_t i) const {
@@ -210,54 +217,51 @@ class Selection {
                ? believed * std::exp(z * free_[i].prior_sd)
                : believed + z * axis_unit(tested_.plant, free_[i]);
   }
-  /// A fit with only the parameters of a set free. `cost`: estimated cost if the other parameters may move
-  /// within the tolerance.
+  /// Fits a set from its predicted optimum `there`. A fit that does not reach the predicted cost is repeated
+  /// from the given values.
+  [[nodiscard]] Fit fit_set(const Set& set, const Prediction& there, bool errors = false) const {
+    FitOptions o = kSearch;
+    o.errors = errors;
+    std::vector<FreeParameter> some;
+    for (const std::size_t i : set) some.push_back(free_[i]);
+    if (set.empty()) return fit(tested_, events_, some, o);
+    FitOptions from = continued(o, all_, some);
+    for (std::size_t i = 0; i < some.size(); ++i) from.values[i] = predicted_value(there, set[i]);
+    Fit f = fit(tested_, events_, some, from);
+    if (penalised(f) < penalised(all_) + there.excess + options_.each) return f;
+    Fit other = fit(tested_, events_, some, o);
+    return better(other, f) ? other : f;
+  }
+  /// Costs of a fit with only the parameters of a set free. `exact`: the other parameters have their given
+  /// values; `cost`: estimate if they may move within the tolerance.
   struct Refit {
-    Fit fit;
-    double cost = std::numeric_limits<double>::infinity();
+    double exact = 0, cost = 0;
   };
-  /// Fits a set from its predicted optimum. A fit that does not reach the predicted cost is repeated from the
-  /// given values.
+  /// Fits a set. Each set is fitted once.
   ///
   /// The fit's cost exceeds that of the full fit. This excess becomes smaller if the other parameters may
   /// move, and Refit::cost applies the reduction factor that the quadratic model predicts. For the parameter
   /// of a limit the predicted factor is too small, because a limit that is not reached has no further
   /// influence on the cost. The estimated excess is therefore at least the predicted excess, or the fit's own
   /// excess if that is lower.
-  [[nodiscard]] Refit refit(const Set& set, bool errors = false) const {
+  const Refit& refit(const Set& set) const {
+    const auto known = refits_.find(set);
+    if (known != refits_.end()) return known->second;
     const Prediction fixed = predict(set, kExactly), soft = predict(set);
-    FitOptions o = kSearch;
-    o.errors = errors;
-    std::vector<FreeParameter> some;
-    for (const std::size_t i : set) some.push_back(free_[i]);
-    FitOptions from = o;
-    if (!set.empty()) {
-      from = continued(o, all_, some);
-      for (std::size_t i = 0; i < some.size(); ++i) from.values[i] = predicted_value(fixed, set[i]);
-    }
-    const double most = penalised(all_);
-    Refit r{fit(tested_, events_, some, from)};
-    if (set.empty()) {
-      require(r.fit);
-    } else if (penalised(r.fit) >= most + fixed.excess + options_.each) {
-      Fit other = fit(tested_, events_, some, o);
-      if (better(other, r.fit)) r.fit = std::move(other);
-    }
-    r.cost = penalised(r.fit);
-    if (const double over = r.cost - most; over > 0 && fixed.excess > 0)
+    const double exact = penalised(fit_set(set, fixed)), most = penalised(all_), over = exact - most;
+    Refit r{exact, exact};
+    if (over > 0 && fixed.excess > 0)
       r.cost = most + std::max(over * soft.excess / fixed.excess, std::min(over, soft.excess));
-    return r;
+    return refits_[set] = r;
   }
   /// Returns the set of this size with the lowest cost. Only sets with the lowest predicted cost are
   /// refitted.
-  const std::pair<Refit, Set>& best_of(std::size_t size) {
-    auto& best = refitted_[size];
-    if (best) return *best;
-    best.emplace();
+  [[nodiscard]] Ranked best_of(std::size_t size) const {
+    Ranked best{std::numeric_limits<double>::infinity(), beams_[size].front().set};
     for (std::size_t k = 0; k < std::min(kRefitted, beams_[size].size()); ++k)
-      if (Refit r = refit(beams_[size][k].set); r.cost < best->first.cost)
-        *best = {std::move(r), beams_[size][k].set};
-    return *best;
+      if (const Refit& r = refit(beams_[size][k].set); r.cost < best.cost)
+        best = {r.cost, beams_[size][k].set};
+    return best;
   }
   [[nodiscard]] static Set without(Set set, std::size_t i) {
     set.erase(set.begin() + static_cast<std::ptrdiff_t>(i));
@@ -265,54 +269,48 @@ class Selection {
   }
   /// Drops members of the set that its other members make redundant, the least important first. A set may
   /// contain such members, because only few sets of each smaller size were refitted.
-  void drop_idle(Set& set, Refit& chosen) const {
+  void drop_idle(Set& set) const {
     while (!set.empty()) {
       std::vector<double> evidence;
-      Refit cheapest;
       for (std::size_t i = 0; i < set.size(); ++i) {
-        Refit less = refit(without(set, i));
-        evidence.push_back(less.cost - chosen.cost);
-        if (evidence.back() <= *std::ranges::min_element(evidence)) cheapest = std::move(less);
+        evidence.push_back(refit(without(set, i)).cost - refit(set).cost);
         report(event::Phase::subsets_less_one, i + 1, set.size());
       }
       const auto least = std::ranges::min_element(evidence);
       if (*least >= options_.each) break;
       set = without(set, static_cast<std::size_t>(least - evidence.begin()));
-      chosen = std::move(cheapest);
     }
   }
   /// Returns the rise of the cost when each member in turn is removed. Parameters outside the set keep their
   /// given values.
-  [[nodiscard]] std::vector<double> evidence(const Set& set, const Fit& only) const {
+  [[nodiscard]] std::vector<double> evidence(const Set& set) const {
     std::vector<double> rises;
-    for (std::size_t i = 0; i < set.size(); ++i) rises.push_back(gain(refit(without(set, i)).fit, only));
+    for (std::size_t i = 0; i < set.size(); ++i)
+      rises.push_back(refit(without(set, i)).exact - refit(set).exact);
     return rises;
   }
   /// Fills the result from fits in which the other parameters keep their given values.
-  void describe(const Set& set, const std::vector<double>& rises, const Refit& chosen,
-                SparseSelection& back) const {
+  void describe(const Set& set, const std::vector<double>& rises, Fit chosen, SparseSelection& back) const {
     const double excess = penalised(back.fit) - penalised(all_);
     for (std::size_t i = 0; i < set.size(); ++i) {
       WrongParameter w;
-      w.fit = chosen.fit.parameters[i];
+      w.fit = chosen.parameters[i];
       w.evidence = rises[i];
       w.share = excess > 0 ? std::clamp(w.evidence / excess, 0.0, 1.0) : 0.0;
-      w.tied = tied(set, set[i], chosen);
+      w.tied = tied(set, set[i]);
       back.wrong.push_back(std::move(w));
     }
     std::ranges::stable_sort(back.wrong, std::greater<>(), &WrongParameter::evidence);
-    for (const auto& [gone, other] : exchanges(set, chosen))
+    for (const auto& [gone, other] : exchanges(set))
       if (other.size() == 2) back.alternatives.push_back({names_of(gone), names_of(other)});
-    back.fit = chosen.fit;
+    back.fit = std::move(chosen);
   }
-  /// Returns whether a set explains the records as well as the chosen one. Each set is refitted once.
-  [[nodiscard]] bool does_as_well(const Set& set, const Refit& chosen) const {
-    const auto known = as_well_.find(set);
-    if (known != as_well_.end()) return known->second;
-    return as_well_[set] = refit(set).cost - chosen.cost < options_.each;
+  /// Returns whether a set explains the records as well as the chosen one.
+  [[nodiscard]] bool does_as_well(const Set& set, const Set& chosen) const {
+    return refit(set).cost - refit(chosen).cost < options_.each;
   }
   /// Returns the names of single parameters that could each replace parameter `which` of the set `set`.
-  [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which, const Refit& chosen) const {
+  [[nodiscard]] std::vector<std::string> tied(const Set& set, std::size_t which) const {
     std::vector<std::string> names;
     std::size_t tried = 0;
     for (const Ranked& r : beams_[set.size()]) {
@@ -323,7 +321,7 @@ class Selection {
       std::ranges::set_difference(set, r.set, std::back_inserter(gone));
       if (other.size() != 1 || gone.size() != 1 || gone.front() != which) continue;
       ++tried;
-      if (does_as_well(r.set, chosen)) names.push_back(name(other.front()));
+      if (does_as_well(r.set, set)) names.push_back(name(other.front()));
     }
     return names;
   }
@@ -338,20 +336,17 @@ class Selection {
   /// Replaces members by a pair of parameters, if the pair makes other members redundant. Returns whether the
   /// set changed. Example: the gain after a regulator may compensate for two wrong gains of the regulator,
   /// and the fit then needs a third parameter.
-  [[nodiscard]] bool exchange(Set& set, Refit& chosen) const {
-    as_well_.clear();
-    for (const auto& [gone, other] : exchanges(set, chosen)) {
+  [[nodiscard]] bool exchange(Set& set) const {
+    for (const auto& [gone, other] : exchanges(set)) {
       if (other.size() != 2) continue;
       Set next, kept;
       std::ranges::set_difference(set, gone, std::back_inserter(kept));
       std::ranges::set_union(kept, other, std::back_inserter(next));
-      Refit fitted = refit(next);
-      drop_idle(next, fitted);
+      drop_idle(next);
       if (next.size() >= set.size() ||
-          fitted.cost - chosen.cost >= options_.each * static_cast<double>(set.size() - next.size()))
+          refit(next).cost - refit(set).cost >= options_.each * static_cast<double>(set.size() - next.size()))
         continue;
-      set = std::move(next), chosen = std::move(fitted);
-      as_well_.clear();
+      set = std::move(next);
       return true;
     }
     return false;
@@ -359,7 +354,7 @@ class Selection {
   using Exchange = std::pair<Set, Set>;  ///< removed members, replacement
   /// Returns the replacements of members of the set by one or two other parameters. A replacement that
   /// contains a smaller replacement is left out.
-  [[nodiscard]] std::vector<Exchange> exchanges(const Set& set, const Refit& chosen) const {
+  [[nodiscard]] std::vector<Exchange> exchanges(const Set& set) const {
     const double here = predict(set).excess;
     std::vector<Exchange> found;
     const auto is_covered = [&](const Set& gone, const Set& other) {
@@ -377,7 +372,7 @@ class Selection {
         if (gone.empty() || other.size() > 2 || is_covered(gone, other)) continue;
         // Beams are in ascending order of predicted cost, so all later sets are worse.
         if (tried++ == kTied || predict(r.set).excess > here + options_.each) break;
-        if (does_as_well(r.set, chosen)) found.emplace_back(std::move(gone), std::move(other));
+        if (does_as_well(r.set, set)) found.emplace_back(std::move(gone), std::move(other));
       }
     }
     return found;
@@ -394,8 +389,7 @@ class Selection {
   Eigen::MatrixXd curvature_;
   Eigen::VectorXd at_;
   std::vector<std::vector<Ranked>> beams_;  ///< [size of the sets]
-  std::vector<std::optional<std::pair<Refit, Set>>> refitted_;
-  mutable std::map<Set, bool> as_well_;  ///< results of does_as_well()
+  mutable std::map<Set, Refit> refits_;     ///< results of refit()
 };
 
 }  // namespace
