@@ -47,7 +47,8 @@ class Identifying {
     for (int point = 0; leader && !other_is_free(side_of(*leader)) && point < kLinearPoints; ++point) {
       fit({leader});
       if (!leader->best() || !linearise_about(*leader)) break;
-      identify();
+      // About the second leader, which fits about as well, the optima found so far suffice as starts.
+      identify(point == 0 ? reduced::IdentifyOptions{} : reduced::IdentifyOptions{.draws = 0, .kept = 0});
       fit_in_reach();
       if (leader == std::exchange(leader, best_fitted())) break;
     }
@@ -129,7 +130,7 @@ class Identifying {
   static bool other_is_free(const Reduced& side) {
     return side->inference().inputs.torque && side->inference().inputs.field;
   }
-  void identify() {
+  void identify(const reduced::IdentifyOptions& options = {}) {
     const Identified* leader = least();
     const bool near = leader && nearly_fits(*leader);
     in_parallel(
@@ -137,7 +138,7 @@ class Identifying {
         [&](std::size_t i) {
           if (!base_model_.stopped())
             until_interrupted([&] {
-              if (!near || nearly_fits(tried_[i])) identify(tried_[i]);
+              if (!near || nearly_fits(tried_[i])) identify(tried_[i], options);
             });
         },
         [&](int done, std::size_t i) {
@@ -150,7 +151,7 @@ class Identifying {
   [[nodiscard]] bool nearly_fits(const Identified& h) const {
     return h.cost < thresholds::search.nearly_fits * base_model_.fit.values;
   }
-  void identify(Identified& h) const {
+  void identify(Identified& h, const reduced::IdentifyOptions& options) const {
     const Reduced& side = side_of(h);
     if (!side) return;
     std::vector<std::vector<double>> known;
@@ -158,7 +159,7 @@ class Identifying {
     const bool first = known.empty();
     if (first) known = h.hypothesis.further;
     if (const fit::Fit* best = h.best()) known.push_back(fit::values_of(best->plant, h.trial.free));
-    h.optima = reduced::identify(*side, h.input(), h.trial, {}, known);
+    h.optima = reduced::identify(*side, h.input(), h.trial, options, known);
     h.optima.resize(std::min(h.optima.size(), kOptima));
     h.cost = h.optima.empty() ? std::numeric_limits<double>::infinity() : h.optima.front().cost;
   }
