@@ -325,7 +325,10 @@ class Diagnoser {
   [[nodiscard]] std::vector<hypothesis::Judgement> beside(const hypothesis::BaseModel& base_model,
                                                           const hypothesis::Judgement& first,
                                                           const std::vector<std::string>& but = {}) const {
-    const hypothesis::BaseModel then = hypothesis::after(base_model, first);
+    hypothesis::BaseModel then = hypothesis::after(base_model, first);
+    then.required = std::min(
+        options_.adequate * first.fit.values,
+        fit::penalised(first.fit) + first.gain - std::max(result_.torque.evidence, result_.field.evidence));
     auto all = then.hypotheses();
     std::erase_if(all, [&](const hypothesis::Hypothesis& h) { return std::ranges::count(but, h.name) > 0; });
     auto pairs = hypothesis::try_hypotheses(then, std::move(all), options_.progress);
@@ -334,7 +337,7 @@ class Diagnoser {
                          ? -1
                          : pairs.front().hypothesis.slot;
     std::erase_if(pairs, [&](const hypothesis::Judgement& j) {
-      return j.gain < thresholds::evidence.second && (slot < 0 || j.hypothesis.slot != slot || !j.fitted);
+      return !j.fitted || (j.gain < thresholds::evidence.second && (slot < 0 || j.hypothesis.slot != slot));
     });
     for (auto& pair : pairs) pair.gain += first.gain;
     return pairs;

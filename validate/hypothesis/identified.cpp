@@ -21,6 +21,8 @@ constexpr std::size_t kLeading = 3;
 constexpr int kLinearPoints = 2;
 /// Maximum number of optima that are kept of one hypothesis.
 constexpr std::size_t kOptima = 2;
+/// Cost of a hypothesis before its identification.
+constexpr double kNotIdentified = std::numeric_limits<double>::infinity();
 /// Minimum evidence of an inferred input, free in time, for a search on its side: strong on the scale of Kass
 /// and Raftery (1995).
 constexpr double kStrongEvidence = 6.0;
@@ -131,14 +133,13 @@ class Identifying {
     return side->inference().inputs.torque && side->inference().inputs.field;
   }
   void identify(const reduced::IdentifyOptions& options = {}) {
-    const Identified* leader = least();
-    const bool near = leader && nearly_fits(*leader);
+    const double reach = highest_cost();
     in_parallel(
         tried_.size(),
         [&](std::size_t i) {
           if (!base_model_.stopped())
             until_interrupted([&] {
-              if (!near || nearly_fits(tried_[i])) identify(tried_[i], options);
+              if (reach == kNotIdentified || tried_[i].cost < reach) identify(tried_[i], options);
             });
         },
         [&](int done, std::size_t i) {
@@ -148,8 +149,13 @@ class Identifying {
         },
         base_model_.threads);
   }
-  [[nodiscard]] bool nearly_fits(const Identified& h) const {
-    return h.cost < thresholds::search.nearly_fits * base_model_.fit.values;
+  /// Returns the cost above which a hypothesis cannot become the best. The linearisation about another block
+  /// predicts the gain of a block with many parameters with an error of up to search.near.
+  [[nodiscard]] double highest_cost() {
+    const Identified* leader = least();
+    if (!leader) return kNotIdentified;
+    return leader->cost + std::max<double>(thresholds::evidence.within_reach,
+                                           thresholds::search.near * (none_ - leader->cost));
   }
   void identify(Identified& h, const reduced::IdentifyOptions& options) const {
     const Reduced& side = side_of(h);
@@ -167,11 +173,11 @@ class Identifying {
     const auto best = std::ranges::min_element(tried_, {}, &Identified::cost);
     return best == tried_.end() || !std::isfinite(best->cost) ? nullptr : &*best;
   }
-  /// Returns whether the best hypothesis is predicted to reach half of the required evidence. The prediction
-  /// of the reduced plant is accurate to a few units of chi2.
+  /// Returns whether the best hypothesis is predicted to reach half of the required evidence, and may be
+  /// accepted.
   [[nodiscard]] bool worth_a_fit() {
     const Identified* best = least();
-    return best &&
+    return best && !cannot_be_accepted(base_model_, best->cost, none_) &&
            none_ - best->cost >
                (base_model_.with.empty() ? thresholds::evidence.accepted : thresholds::evidence.second) / 2;
   }
@@ -216,17 +222,15 @@ class Identifying {
     } catch (const InputError&) {  // integration with sensitivities takes other steps and may fail
     }
   }
-  /// Fits the hypotheses that may come within reach of the best. All blocks that nearly fit
-  /// (search.nearly_fits) are fitted too, because a linearisation about another block predicts the cost of a
-  /// block with many parameters poorly.
+  /// Fits the hypotheses that may come within reach of the best.
   void fit_in_reach() {
-    const Identified* leader = least();
-    if (!leader) return;
-    const double reach = leader->cost + thresholds::evidence.within_reach;
+    const double reach = highest_cost();
     std::vector<Identified*> some;
     for (Identified& h : tried_) {
-      if (h.cost < reach || (std::isfinite(h.cost) && nearly_fits(h))) some.push_back(&h);
-      if (!(h.cost < reach) && !h.polished) h.fits.clear();
+      if (h.cost < reach)
+        some.push_back(&h);
+      else if (!h.polished)
+        h.fits.clear();
     }
     fit(some);
   }

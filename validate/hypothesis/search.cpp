@@ -73,7 +73,8 @@ class WholeFits {
     std::vector<Judgement> tried;
     const double needed = this->needed();
     std::erase_if(candidates, [&](Candidate& c) {
-      if (c.cost < needed) return false;
+      if (c.cost < needed && !cannot_be_accepted(base_model_, c.cost, fit::penalised(base_model_.fit)))
+        return false;
       tried.push_back(not_fitted(c));
       return true;
     });
@@ -163,7 +164,7 @@ class WholeFits {
     double least = least_;
     for (const Candidate& c : candidates)
       for (const fit::Fit& f : c.fits) least = std::min(least, fit::penalised(f));
-    return std::min(least + out_of_reach(), needed());
+    return std::min({least + out_of_reach(), needed(), base_model_.required});
   }
   /// Returns the cost at which a hypothesis has half of the required evidence.
   [[nodiscard]] double needed() const {
@@ -229,6 +230,10 @@ std::uint64_t stream_of(const std::string& name) {  // FNV-1a
 double length(const BaseModel& base_model) {
   const auto& t = base_model.events.front().record.t;
   return t.back() - t.front();
+}
+
+bool cannot_be_accepted(const BaseModel& base_model, double predicted, double none) {
+  return predicted - thresholds::search.near * (none - predicted) > base_model.required;
 }
 
 std::string too_small(double gain) {

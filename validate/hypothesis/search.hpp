@@ -3,6 +3,7 @@
 // Afterwards judge() tests the leading hypotheses on unseen events.
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,6 +28,8 @@ struct BaseModel {
   std::string with = {};  ///< name of the effect added before; empty: the given model
   double prior_sd = thresholds::parameters.prior_sd;  ///< prior standard deviation of the model's parameters
   int threads = 1;                                    ///< number of threads
+  /// Cost (fit::penalised) above which no hypothesis can be accepted.
+  double required = std::numeric_limits<double>::infinity();
   /// Returns whether the user has asked to stop; results so far are then kept. May be empty.
   std::function<bool()> stop = {};
   /// Inputs inferred with this base model, free functions of time; null: not yet inferred.
@@ -60,6 +63,9 @@ std::vector<fit::FreeParameter> free_with_own(const BaseModel& base_model);
 std::uint64_t stream_of(const std::string& name);
 /// Returns the length of the first record [s].
 double length(const BaseModel& base_model);
+/// Returns whether a hypothesis with the predicted cost `predicted` cannot be accepted. `none`: predicted
+/// cost of the base model. The prediction may be wrong by search.near.
+bool cannot_be_accepted(const BaseModel& base_model, double predicted, double none);
 /// Returns the reason why a hypothesis with this predicted reduction of chi2 is not fitted.
 std::string too_small(double gain);
 

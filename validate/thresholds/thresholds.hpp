@@ -154,11 +154,11 @@ inline constexpr Noise noise;  ///< the thresholds in use
 
 /// Selection of the hypotheses that are fitted, and of the effort.
 struct Search {
-  /// Reduced chi-square below which a hypothesis is fitted with the whole plant [chi2 per value].
-  Threshold nearly_fits{
-      "search.nearly_fits", 1.5, "chi2 per value",
-      "hypotheses with a smaller reduced chi-square are fitted with the whole plant, whatever "
-      "their rank in the identification (decision 61)"};
+  /// Largest error of a predicted gain in chi2 [-].
+  Threshold near{
+      "search.near", 0.1, "share of the best gain",
+      "hypotheses whose predicted gain is within this share of the best one are fitted with the whole plant "
+      "(decision 61)"};
   /// Least share of the better inferred input's gain in chi2 at which blocks of the other input (torque or
   /// field voltage) are identified too [-].
   Threshold fair{

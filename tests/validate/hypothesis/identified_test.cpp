@@ -5,6 +5,7 @@
 
 #include "tests/validate/playin/support.hpp"
 #include "validate/event/event.hpp"
+#include "validate/hypothesis/search.hpp"
 #include "validate/noise/pre_event.hpp"
 #include "validate/plant/plant_model.hpp"
 
@@ -100,6 +101,18 @@ TEST_F(IdentifiedExciter, IsNotFitted_WhenTheBaseModelReachesTheNoise) {
       EXPECT_EQ(j.why_not, "not fitted: even an arbitrary torque reduces the residual too little");
     }
   }
+}
+
+TEST_F(IdentifiedExciter, IsNotFitted_IfItCannotBeAccepted) {
+  BaseModel base_model = base_model_;
+  base_model.required = 100;
+  EXPECT_FALSE(cannot_be_accepted(base_model, 105, 200));  // the gain of 95 may be wrong by a tenth
+  EXPECT_TRUE(cannot_be_accepted(base_model, 112, 200));
+  base_model.required = -fit::penalised(base_);  // out of reach even with an error of a tenth
+  const auto none = found(base_model, {"SEXS"});
+  ASSERT_EQ(none.size(), 1U);
+  EXPECT_FALSE(none.front().fitted);
+  EXPECT_NE(none.front().why_not.find("too small"), std::string::npos) << none.front().why_not;
 }
 
 }  // namespace
