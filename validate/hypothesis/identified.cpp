@@ -21,8 +21,6 @@ constexpr std::size_t kLeading = 3;
 constexpr int kLinearPoints = 2;
 /// Maximum number of optima that are kept of one hypothesis.
 constexpr std::size_t kOptima = 2;
-/// Cost of a hypothesis before its identification.
-constexpr double kNotIdentified = std::numeric_limits<double>::infinity();
 /// Minimum evidence of an inferred input, free in time, for a search on its side: strong on the scale of Kass
 /// and Raftery (1995).
 constexpr double kStrongEvidence = 6.0;
@@ -139,7 +137,7 @@ class Identifying {
         [&](std::size_t i) {
           if (!base_model_.stopped())
             until_interrupted([&] {
-              if (reach == kNotIdentified || tried_[i].cost < reach) identify(tried_[i], options);
+              if (!(tried_[i].cost > reach)) identify(tried_[i], options);
             });
         },
         [&](int done, std::size_t i) {
@@ -149,11 +147,12 @@ class Identifying {
         },
         base_model_.threads);
   }
-  /// Returns the cost above which a hypothesis cannot become the best. The linearisation about another block
-  /// predicts the gain of a block with many parameters with an error of up to search.near.
+  /// Returns the cost above which a hypothesis cannot become the best; infinite before the first
+  /// identification. The linearisation about another block predicts the gain of a block with many parameters
+  /// with an error of up to search.near.
   [[nodiscard]] double highest_cost() {
     const Identified* leader = least();
-    if (!leader) return kNotIdentified;
+    if (!leader) return std::numeric_limits<double>::infinity();
     return leader->cost + std::max<double>(thresholds::evidence.within_reach,
                                            thresholds::search.near * (none_ - leader->cost));
   }
