@@ -417,11 +417,15 @@ LoopReport train_network(networks::Network& network, const LoopData& data, const
 
 std::vector<float> predict(networks::Network& network, const data::ShardStream& stream,
                            const data::Features& features, std::span<const std::uint64_t> rows,
-                           std::span<const float> guesses, const std::optional<data::Noise>& noise) {
+                           std::span<const float> guesses, const std::optional<data::Noise>& noise,
+                           const std::function<void(std::size_t)>& computed) {
   at::NoGradGuard no_gradients;
   data::BatchReader reader(stream, {rows.begin(), rows.end()}, 512, 0, noise);
   std::vector<float> out;
+  std::size_t done = 0;
   for (data::Batch batch; reader.next(batch);) {
+    if (computed) computed(done);
+    done += batch.rows.size();
     const Tensor y =
         network.forward(inputs_of(batch, features, guesses, stream.labels().rows), nullptr).contiguous();
     out.insert(out.end(), y.data_ptr<float>(), y.data_ptr<float>() + y.numel());

@@ -70,10 +70,11 @@ LoopReport train_network(networks::Network& network, const LoopData& data, const
                          TrainingProgress& progress);
 
 /// Returns the network's outputs for `rows`, rows x outputs [scaled units]. `guesses`: as in LoopData;
-/// `noise`: default is that of test rows.
+/// `noise`: default is that of test rows; `computed` is called with the number of rows so far.
 std::vector<float> predict(networks::Network& network, const data::ShardStream& stream,
                            const data::Features& features, std::span<const std::uint64_t> rows,
-                           std::span<const float> guesses = {}, const std::optional<data::Noise>& noise = {});
+                           std::span<const float> guesses = {}, const std::optional<data::Noise>& noise = {},
+                           const std::function<void(std::size_t)>& computed = {});
 
 /// Returns Adam's learning rate at a step (from 0) of `steps` steps.
 double learning_rate(const TrainingRecipe& recipe, std::uint64_t step, std::uint64_t steps);

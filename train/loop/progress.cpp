@@ -36,11 +36,17 @@ void TrainingProgress::update(std::uint64_t done, const std::string& note) {
   std::fflush(stderr);
 }
 
+TrainingProgress::~TrainingProgress() { clear_line(); }
+
+void TrainingProgress::clear_line() {
+  if (open_line_) std::fputs("\r\033[K", stderr);
+  open_line_ = false;
+}
+
 /// Removes the status line and the chart from the terminal.
 void TrainingProgress::clear() {
-  if (open_line_) fmt::print(stderr, "\r\033[K");
+  clear_line();
   if (chart_lines_ > 0) fmt::print(stderr, "\033[{}A\033[J", chart_lines_);
-  open_line_ = false;
   chart_lines_ = 0;
 }
 

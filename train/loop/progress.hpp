@@ -11,6 +11,10 @@ class TrainingProgress {
  public:
   /// total: samples of all epochs; title: start of each line. Writes to standard error.
   TrainingProgress(std::string title, std::uint64_t total, bool quiet = false);
+  TrainingProgress(const TrainingProgress&) = delete;
+  TrainingProgress& operator=(const TrainingProgress&) = delete;
+  /// Removes the status line from the terminal; a chart stays.
+  ~TrainingProgress();
   /// done: samples so far, including those before a resume; note: text about the epoch.
   void update(std::uint64_t done, const std::string& note);
   /// Prints a separate line, on a terminal or in a log.
@@ -27,6 +31,7 @@ class TrainingProgress {
   bool started_ = false, terminal_, quiet_, open_line_ = false;
   std::ptrdiff_t chart_lines_ = 0;  ///< number of lines of the shown chart
 
+  void clear_line();
   void clear();
   Clock::time_point begin_, last_;
 };

@@ -106,10 +106,12 @@ std::string scored(const loop::Score& s, double seconds) {
 }
 
 /// Returns the network's estimates in raw units, clamped to the sampling box, which contains every true
-/// value.
+/// value. `computed`: as in loop::predict().
 std::vector<double> estimates(const Trained& trained, const PreparedRun& run, const Guesses& known,
-                              std::span<const std::uint64_t> rows) {
-  const auto out = loop::predict(*trained.network, run.stream, trained.features, rows, known.scaled);
+                              std::span<const std::uint64_t> rows,
+                              const std::function<void(std::size_t)>& computed = {}) {
+  const auto out =
+      loop::predict(*trained.network, run.stream, trained.features, rows, known.scaled, {}, computed);
   const data::TargetScale& scale = run.scale;
   const mpi::store::Dataset& d = run.stream.dataset();
   std::vector<double> raw(out.size());
@@ -244,9 +246,15 @@ class NetworkRun {
 
   void judge_to(const std::filesystem::path& result, const Trained& trained) {
     const data::RowSplit& split = run_.split;
-    const std::vector<double> found = estimates(trained, run_, known_, split.test);
+    loop::TrainingProgress progress(name_, split.test.size() + split.validation.size(), quiet_);
+    const auto found_for = [&](std::span<const std::uint64_t> rows, std::size_t before) {
+      return estimates(trained, run_, known_, rows, [&progress, before](std::size_t computed) {
+        progress.update(before + computed, "rows estimated");
+      });
+    };
+    const std::vector<double> found = found_for(split.test, 0);
     const loop::Score score = judge(found, run_, split.test);
-    const double seen = judge(estimates(trained, run_, known_, split.validation), run_, split.validation).mse;
+    const double seen = judge(found_for(split.validation, split.test.size()), run_, split.validation).mse;
     const bool head = trained.posterior.head != nullptr;
     const json believed = head ? judge_posterior(run_, trained) : json();
     const json several = several_json(run_.stream.labels(), split.test, found,
