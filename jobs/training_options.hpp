@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -27,8 +28,9 @@ struct TrainingOptions {
   double noise = 0, train_share = 1;
   std::size_t test_rows = 0;
   std::string simulate;
-  mpi::draw::Overrides simulated;
-  bool shuffle_labels = false, save_network = true, trust = false, any_maker = false, watch = false;
+  mpi::draw::Overrides simulated, simulated_more;
+  bool fresh_rows = false, shuffle_labels = false, save_network = true, trust = false, any_maker = false,
+       watch = false;
 
   void add_to(jobs::CommandLine& line) {
     line.add("DATASET", dataset, "folder that `swingbank generate` wrote");
@@ -42,7 +44,15 @@ struct TrainingOptions {
         .not_negative();
     line.add(
         "--training-rows", training_rows,
-        "additional training rows: folder of the dataset generated from the experiment's training_dataset");
+        "additional training rows: folder of the dataset generated from the experiment's training_dataset; with "
+        "--simulate: the config of that dataset");
+    line.add("--training-draws", simulated_more.draws,
+             "with --simulate: number of events of --training-rows; overrides the config")
+        .positive();
+    line.add_flag(
+        "--fresh-rows", fresh_rows,
+        "with --simulate: simulate new events for every epoch after the first; test and validation rows "
+        "stay the same");
     line.add("--experiment", experiment, "file of configs/experiments: table, dataset, presets").required();
     line.add("--preset", preset, "preset of the experiment, for example quick, nightly or thesis")
         .shows_default();
@@ -92,12 +102,18 @@ struct TrainingOptions {
     if (dataset.empty() && simulate.empty())
       problems.add("no dataset", "DATASET", "a run needs one",
                    "give the folder that `swingbank generate` wrote, or --simulate with a dataset's config");
-    if (!simulate.empty() && !(dataset.empty() && training_rows.empty()))
+    if (!simulate.empty() && !dataset.empty())
       problems.add("two datasets", "--simulate", "DATASET and --simulate exclude each other",
                    "give one of the two");
-    if (simulate.empty() && (simulated.draws || simulated.seed))
-      problems.add("no config to simulate", "--draws, --draw-seed", "they change values of a config",
-                   "give --simulate, or leave them out");
+    if (simulate.empty() && (simulated.draws || simulated.seed || simulated_more.draws || fresh_rows))
+      problems.add("no config to simulate", "--draws, --draw-seed, --training-draws, --fresh-rows",
+                   "they change values of a config or simulate it", "give --simulate, or leave them out");
+    if (training_rows.empty() && simulated_more.draws)
+      problems.add("no second config to simulate", "--training-draws", "it changes a value of that config",
+                   "give --training-rows, or leave it out");
+    if (fresh_rows && shuffle_labels)
+      problems.add("new rows with shuffled labels", "--fresh-rows, --shuffle-labels",
+                   "the labels of stored rows are shuffled", "give one of the two");
     if (out.empty()) problems.add("no output folder", "--out", "results need a folder", "give a folder");
     if (!(noise >= 0 && noise <= 0.1))
       problems.add(fmt::format("a noise level of {}", noise), "--noise", "a level lies between 0 and 0.1",
@@ -121,6 +137,11 @@ struct TrainingOptions {
     const std::size_t judged = test_rows > 0 ? test_rows : r.experiment.judging(preset, r.network).test_rows;
     if (judged > 0) r.test_rows = judged;
     r.out = out;
+    if (fresh_rows)
+      r.fresh = [this, recipe = r.experiment.input(preset, r.network).recipe](
+                    std::size_t epoch, const train::data::StreamOptions& stream) {
+        return fresh(recipe, stream, epoch);
+      };
     check_training_rows(r.experiment.training(preset, r.network).training_rows, r.network);
     return r;
   }
@@ -128,10 +149,12 @@ struct TrainingOptions {
   /// missing although it does. Otherwise runs on different rows would have the same name.
   void check_training_rows(bool wanted, const std::string& of) const {
     if (wanted == !training_rows.empty()) return;
-    throw InputError({wanted ? "no additional training rows" : "additional training rows", "--training-rows",
-                      fmt::format("network {} of preset {} in {} {} them", of, preset, experiment,
-                                  wanted ? "trains on" : "does not train on"),
-                      wanted ? "give the folder of the experiment's training_dataset" : "leave it out"});
+    throw InputError(
+        {wanted ? "no additional training rows" : "additional training rows", "--training-rows",
+         fmt::format("network {} of preset {} in {} {} them", of, preset, experiment,
+                     wanted ? "trains on" : "does not train on"),
+         wanted ? "give the folder of the experiment's training_dataset, or with --simulate its config"
+                : "leave it out"});
   }
   /// Returns the stream of the dataset's rows, read from disk or simulated in memory.
   [[nodiscard]] train::data::ShardStream open(const train::run::RunRequest& r) const {
@@ -139,14 +162,44 @@ struct TrainingOptions {
     const train::data::StreamOptions stream{
         bytes, readers, trust, {r.noise, r.seed, r.experiment.training(preset, r.network).noise_levels}};
     const train::data::InputRecipe& recipe = r.experiment.input(preset, r.network).recipe;
-    if (!simulate.empty()) {
-      const int makers = threads > 0 ? threads : train::runtime::default_threads();
-      mpi::draw::SimulatedShards shards(mpi::draw::read_dataset_config(simulate, simulated), makers);
-      return {shards.header(), [&] { return shards.next(); }, recipe, stream};
-    }
+    if (!simulate.empty()) return simulated_stream(recipe, stream, 0);
     std::optional<mpi::store::Dataset> more;
     if (!training_rows.empty()) more = mpi::store::open_dataset(training_rows);
     return {mpi::store::open_dataset(dataset), recipe, stream, more};
+  }
+
+ private:
+  /// Simulates the rows in memory. `later`: number that is added to the seeds of the configs.
+  [[nodiscard]] train::data::ShardStream simulated_stream(const train::data::InputRecipe& recipe,
+                                                          const train::data::StreamOptions& stream,
+                                                          std::uint64_t later) const {
+    using mpi::draw::SimulatedShards;
+    using train::data::ShardSource;
+    const auto shards_of = [&](const std::string& file, const mpi::draw::Overrides& overrides) {
+      mpi::draw::DatasetConfig config = mpi::draw::read_dataset_config(file, overrides);
+      config.seed += later;
+      return std::make_unique<SimulatedShards>(config,
+                                               threads > 0 ? threads : train::runtime::default_threads());
+    };
+    const auto source_of = [](SimulatedShards& shards) {
+      return ShardSource{shards.header(), [&shards] { return shards.next(); }};
+    };
+    const auto shards = shards_of(simulate, simulated);
+    if (training_rows.empty()) return {source_of(*shards), recipe, stream};
+    const auto more = shards_of(training_rows, simulated_more);
+    const ShardSource further = source_of(*more);
+    return {source_of(*shards), recipe, stream, &further};
+  }
+  /// Returns the stream of new events for an epoch; null after a stop signal.
+  [[nodiscard]] std::shared_ptr<const train::data::ShardStream> fresh(
+      const train::data::InputRecipe& recipe, const train::data::StreamOptions& stream,
+      std::size_t epoch) const {
+    try {
+      return std::make_shared<const train::data::ShardStream>(simulated_stream(recipe, stream, epoch));
+    } catch (const InputError&) {
+      if (stop_asked()) return nullptr;
+      throw;
+    }
   }
 };
 

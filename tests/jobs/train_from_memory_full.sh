@@ -55,6 +55,37 @@ for fold in 30 31; do
   diff <(grep -v seconds "$work/folds-disk/$name") <(grep -v seconds "$work/folds-memory/$name") || fail "a fold trained from memory differs"
 done
 
+# Rows of a second dataset, for training only.
+mkdir "$work/more"
+TINY_DRAWS=80 TINY_TRAINING_DRAWS=40 TINY_EPOCHS=3 TINY_T_END=2.0 tiny_experiment "$work/more"
+sed 's/^split = .*/split = "by-databank-point"/;/^folds/d' "$work/more/tiny.toml" >"$work/more/split.toml"
+"$swingbank" generate "$work/more/tiny_points.toml" --draws 40 --progress none --out "$work/more/points" >/dev/null 2>&1
+with_more() { # OUT ARGUMENTS
+  "$swingbank" train --experiment "$work/more/split.toml" --network mlp --out "$work/$1" "${@:2}" >"$work/log" 2>&1
+}
+simulated=(--simulate "$work/float32/tiny_data.toml" --training-rows "$work/more/tiny_points.toml" --training-draws 40)
+with_more more-disk "$work/float32/data" --training-rows "$work/more/points" || fail "more rows: $(cat "$work/log")"
+with_more more-memory "${simulated[@]}" || fail "more rows from memory: $(cat "$work/log")"
+diff <(told more-disk) <(told more-memory) || fail "the results with training rows from memory differ"
+
+# New events in each epoch: reproducible, also after an interruption.
+with_more fresh "${simulated[@]}" --fresh-rows || fail "new rows: $(cat "$work/log")"
+cmp -s <(told more-memory) <(told fresh) && fail "new rows change nothing"
+[[ $(grep -c 'new training rows' "$work/log") == 2 ]] || fail "new rows are not simulated in two of three epochs"
+"$swingbank" train --experiment "$work/more/split.toml" --network mlp --out "$work/stopped" "${simulated[@]}" --fresh-rows \
+  >"$work/log" 2>&1 &
+until grep -q 'new training rows' "$work/log" 2>/dev/null && ls "$work/stopped" >/dev/null 2>&1; do sleep 0.02; done
+kill -TERM $!
+code=0
+wait $! || code=$?
+((code == 0 || code == 2)) || fail "interrupted with $code: $(cat "$work/log")"
+with_more stopped "${simulated[@]}" --fresh-rows || fail "continued: $(cat "$work/log")"
+diff <(told fresh) <(told stopped) || fail "the continued run gives another result"
+refuses "new rows of a stored dataset" "no config to simulate at --draws" "$swingbank" train "$work/float32/data" \
+  --experiment "$work/split.toml" --fresh-rows --out "$work/none"
+refuses "new rows with shuffled labels" "new rows with shuffled labels at --fresh-rows" "$swingbank" train \
+  --simulate "$work/tiny_data.toml" --experiment "$work/split.toml" --fresh-rows --shuffle-labels --out "$work/none"
+
 sed 's/^networks = .*/networks = ["closed-form"]/' "$work/split.toml" >"$work/direct.toml"
 refuses "a method that reads records" "network closed-form at --simulate" "$swingbank" train --experiment "$work/direct.toml" \
   --simulate "$work/tiny_data.toml" --out "$work/direct"

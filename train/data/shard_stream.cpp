@@ -36,6 +36,7 @@ ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe,
       noise_(dataset_, options.noise) {
   require_rows();
   labels_.parameters = dataset_.parameter_names.size();
+  labels_.judged = rows_;
   if (more) append(*more);
   const bool fits = rows_ <= options_.memory_limit / (kept() * sizeof(float));
   Problems problems;
@@ -48,41 +49,48 @@ ShardStream::ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe,
   }
   problems.raise();
   labels_.rows = rows_;
-  labels_.judged = dataset_.rows;
 }
 
-ShardStream::ShardStream(const mpi::store::DatasetHeader& header,
-                         const std::function<mpi::store::ShardData()>& next, const InputRecipe& recipe,
-                         const StreamOptions& options)
-    : dataset_(without_shards(header)),
+ShardStream::ShardStream(const ShardSource& source, const InputRecipe& recipe, const StreamOptions& options,
+                         const ShardSource* more)
+    : dataset_(without_shards(source.header)),
       from_memory_(true),
       selection_(select_input(recipe, dataset_)),
       options_(options),
       noise_(dataset_, options.noise) {
   labels_.parameters = dataset_.parameter_names.size();
-  for (std::uint64_t k = 0; k < header.shard_count(); ++k) take(next());
+  take_all(source, dataset_);
   require_rows();
-  dataset_.hash = mpi::store::dataset_hash(dataset_.shards);
-  shards_ = dataset_.shards;
-  labels_.rows = rows_;
   labels_.judged = rows_;
+  if (more != nullptr) {
+    more_ = without_shards(more->header);
+    require_same(*more_);
+    take_all(*more, *more_);
+  }
+  labels_.rows = rows_;
 }
 
-void ShardStream::take(const mpi::store::ShardData& shard) {
-  const mpi::store::ShardInfo info = mpi::store::info_of(dataset_, shard, rows_);
+void ShardStream::take_all(const ShardSource& source, mpi::store::Dataset& into) {
+  for (std::uint64_t k = 0; k < source.header.shard_count(); ++k) take(source.next(), into);
+  into.hash = mpi::store::dataset_hash(into.shards);
+}
+
+void ShardStream::take(const mpi::store::ShardData& shard, mpi::store::Dataset& into) {
+  into.shards.push_back(mpi::store::info_of(into, shard, into.rows));
+  mpi::store::ShardInfo info = into.shards.back();
+  info.first_row = rows_;
   rows_ += shard.rows;
-  dataset_.rows = rows_;
+  into.rows += shard.rows;
   if (rows_ > options_.memory_limit / (kept() * sizeof(float)))
     throw InputError(
-        {fmt::format("too little memory for the rows of {}", dataset_.name),
-         fmt::format("shard {}", info.shard),
+        {fmt::format("too little memory for the rows of {}", into.name), fmt::format("shard {}", info.shard),
          fmt::format("{} rows of {} values are more than {:.1f} GB", rows_, kept(),
                      static_cast<double>(options_.memory_limit) * 1e-9),
          "raise --memory-limit, lower --draws, or write the dataset to disk with `swingbank generate`"});
+  shards_.push_back(info);
   keep_labels(shard, info);
   keep_series(shard, info);
-  for (const auto& [name, count] : info.outcomes) dataset_.outcomes[name] += count;
-  dataset_.shards.push_back(info);
+  for (const auto& [name, count] : info.outcomes) into.outcomes[name] += count;
 }
 
 void ShardStream::require_rows() const {
@@ -95,7 +103,7 @@ std::size_t ShardStream::kept() const {
   return options_.noise.training ? dataset_.channel_names.size() * dataset_.samples : selection_.values();
 }
 
-void ShardStream::append(mpi::store::Dataset more) {
+void ShardStream::require_same(const mpi::store::Dataset& more) const {
   const mpi::store::Dataset& d = dataset_;
   const auto filter = [](const mpi::store::Dataset& of) {
     return mpi::store::config_numbers(of, "record.frequency");
@@ -118,6 +126,10 @@ void ShardStream::append(mpi::store::Dataset more) {
        "list of parameters");
   same(more.parameter_low == d.parameter_low && more.parameter_high == d.parameter_high, "sampling box");
   problems.raise();
+}
+
+void ShardStream::append(mpi::store::Dataset more) {
+  require_same(more);
   for (mpi::store::ShardInfo& shard : more.shards) {
     shard.first_row += rows_;
     shards_.push_back(shard);

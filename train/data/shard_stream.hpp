@@ -30,6 +30,12 @@ struct StreamOptions {
   NoiseRecipe noise = {};
 };
 
+/// Dataset whose shards come from a function instead of from disk.
+struct ShardSource {
+  const mpi::store::DatasetHeader& header;
+  std::function<mpi::store::ShardData()> next;  ///< returns the shards in order of their numbers
+};
+
 inline constexpr std::uint64_t kValidationDraw =
     std::uint64_t{1} << 32;  ///< noise of validation rows, above any epoch's number
 
@@ -43,15 +49,18 @@ class ShardStream {
   ShardStream(mpi::store::Dataset dataset, const InputRecipe& recipe, const StreamOptions& options = {},
               const std::optional<mpi::store::Dataset>& more = {});
 
-  /// Takes the shards from `next` instead of from disk. `header` describes their dataset. Keeps labels and
-  /// series and discards the shards. The stream equals that of the same dataset read from disk. Throws
-  /// InputError if the series exceed the memory limit.
-  ShardStream(const mpi::store::DatasetHeader& header, const std::function<mpi::store::ShardData()>& next,
-              const InputRecipe& recipe, const StreamOptions& options = {});
+  /// Takes the shards from sources instead of from disk. Keeps labels and series and discards the shards. The
+  /// stream equals that of the same datasets read from disk. Throws InputError if the series exceed the
+  /// memory limit.
+  ShardStream(const ShardSource& source, const InputRecipe& recipe, const StreamOptions& options = {},
+              const ShardSource* more = nullptr);
 
   [[nodiscard]] const mpi::store::Dataset& dataset() const { return dataset_; }
   /// Returns whether the dataset is only in memory and has no complete records on disk.
   [[nodiscard]] bool from_memory() const { return from_memory_; }
+  [[nodiscard]] const StreamOptions& options() const { return options_; }
+  /// Returns the memory that series or records take [bytes].
+  [[nodiscard]] std::uint64_t bytes() const { return (series_.size() + records_.size()) * sizeof(float); }
   /// Returns the dataset of the further rows. Its row numbers follow those of the first dataset.
   [[nodiscard]] const std::optional<mpi::store::Dataset>& more() const { return more_; }
   [[nodiscard]] const InputSelection& selection() const { return selection_; }
@@ -76,9 +85,11 @@ class ShardStream {
   void read(std::span<const std::uint64_t> rows, float* out) const { read(rows, out, judged()); }
 
  private:
+  void require_same(const mpi::store::Dataset& more) const;
   void append(mpi::store::Dataset more);
   void load(const mpi::store::ShardInfo& shard, bool fits);
-  void take(const mpi::store::ShardData& shard);
+  void take_all(const ShardSource& source, mpi::store::Dataset& into);
+  void take(const mpi::store::ShardData& shard, mpi::store::Dataset& into);
   void require_rows() const;
   /// Returns the number of values kept per row in memory.
   [[nodiscard]] std::size_t kept() const;

@@ -105,19 +105,37 @@ class Loop {
   }
 
  private:
+  /// Gets the epoch's training rows if they change. Returns false if a rank was asked to stop.
+  bool take_rows() {
+    if (!data_.fresh || at_.epoch == 0) return true;
+    fresh_.reset();  // before the new rows, so that memory holds those of one epoch
+    progress_.line(fmt::format("epoch {} of {}: new training rows", at_.epoch + 1, settings_.recipe.epochs));
+    ranks_.agree("the training rows", [&] { fresh_ = data_.fresh(at_.epoch); });
+    std::array<float, 1> stopped = {fresh_ ? 0.0f : 1.0f};
+    ranks_.sum(stopped);
+    return stopped[0] == 0.0f;
+  }
+
   /// Trains one epoch. If the run is asked to stop, saves a checkpoint and returns false.
   bool epoch() {
-    const std::vector<std::uint64_t> order = data::epoch_order(data_.train, settings_.seed, at_.epoch);
+    if (!take_rows()) {
+      save();
+      return false;
+    }
+    const data::ShardStream& stream = fresh_ ? *fresh_->stream : data_.stream;
+    std::vector<std::uint64_t> order =
+        data::epoch_order(fresh_ ? fresh_->rows : data_.train, settings_.seed, at_.epoch);
+    order.resize(std::min(order.size(), data_.train.size()));
     const std::size_t whole = settings_.recipe.batch;
     std::vector<std::uint64_t> own;
     for (std::size_t begin = 0; begin < order.size(); begin += whole)
       for (std::size_t i = rank_; i < std::min(whole, order.size() - begin); i += size_)
         own.push_back(order[begin + i]);
-    data::BatchReader reader(data_.stream, std::move(own), (whole - rank_ + size_ - 1) / size_, at_.batch,
-                             data_.stream.training(settings_.first_draw + at_.epoch));
+    data::BatchReader reader(stream, std::move(own), (whole - rank_ + size_ - 1) / size_, at_.batch,
+                             stream.training(settings_.first_draw + at_.epoch));
     const auto begin = Clock::now();
     const double before = at_.rows;
-    while (at_.batch < batches_) {
+    while (at_.batch * whole < order.size()) {
       const bool stop = settings_.stop ? settings_.stop() : stop_asked();
       if (size_ == 1 && stop) {
         save();
@@ -183,7 +201,7 @@ class Loop {
     const auto own = static_cast<double>(batch.rows.size());
     const Tensor loss = loss_of(
         network_.forward(inputs_of(batch, data_.features, data_.guesses, data_.stream.labels().rows), &place),
-        targets_of(batch.rows));
+        targets_of(batch.rows, fresh_ ? fresh_->targets : data_.targets));
     (loss * (own / rows)).backward();
     if (count) operations_per_row_ = count->operations() / own;
     return loss.item<double>() * own / rows;
@@ -272,7 +290,7 @@ class Loop {
     double sum = 0.0;
     for (data::Batch batch; reader.next(batch);) {
       const Tensor x = inputs_of(batch, data_.features, data_.guesses, data_.stream.labels().rows);
-      sum += data_.loss(network_.forward(x, nullptr), targets_of(batch.rows)).item<double>() *
+      sum += data_.loss(network_.forward(x, nullptr), targets_of(batch.rows, data_.targets)).item<double>() *
              static_cast<double>(batch.rows.size());
     }
     return sum;
@@ -315,10 +333,11 @@ class Loop {
     for (std::size_t i = 0; i < weights_.size(); ++i) best_[i].copy_(weights_[i].detach());
   }
 
-  Tensor targets_of(std::span<const std::uint64_t> rows) const {
+  /// Returns the targets of rows. `all`: targets of all rows of their stream.
+  Tensor targets_of(std::span<const std::uint64_t> rows, std::span<const float> all) const {
     Tensor y = at::empty({static_cast<std::int64_t>(rows.size()), outputs_}, at::kFloat);
     for (std::size_t i = 0; i < rows.size(); ++i)
-      std::copy_n(data_.targets.data() + rows[i] * static_cast<std::uint64_t>(outputs_), outputs_,
+      std::copy_n(all.data() + rows[i] * static_cast<std::uint64_t>(outputs_), outputs_,
                   y.data_ptr<float>() + static_cast<std::int64_t>(i) * outputs_);
     return y;
   }
@@ -394,6 +413,7 @@ class Loop {
   const mpi::items::Ranks& ranks_;
   std::size_t rank_, size_;
   std::vector<std::uint64_t> own_validation_;     // validation rows of this rank
+  std::optional<EpochRows> fresh_;                // none in an epoch on the rows LoopData::train
   std::vector<float> buffer_;                     // message of sum_gradients
   std::vector<Tensor> weights_, best_, average_;  // average_: empty unless weights are averaged
   Adam adam_;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
@@ -26,6 +27,13 @@ class Tensor;
 
 namespace swingbank::train::loop {
 
+/// Training rows of one epoch.
+struct EpochRows {
+  std::shared_ptr<const data::ShardStream> stream;
+  std::vector<std::uint64_t> rows;  ///< row numbers, ascending
+  std::vector<float> targets;       ///< scaled targets, all rows of the stream x outputs
+};
+
 struct LoopData {
   const data::ShardStream& stream;
   const data::Features& features;
@@ -36,6 +44,9 @@ struct LoopData {
   std::span<const float> weights = {};  ///< weights of the outputs' squared errors, mean 1; empty: equal
   /// Scalar loss of outputs and scaled targets; empty: Network::loss, else weighted mean squared error.
   std::function<at::Tensor(const at::Tensor&, const at::Tensor&)> loss = {};
+  /// Returns the training rows of an epoch, from 1; none if a signal asks to stop. An epoch reads at most as
+  /// many rows as `train` has. Empty: every epoch reads the rows `train`. Not together with guesses.
+  std::function<std::optional<EpochRows>(std::size_t epoch)> fresh = {};
 };
 
 struct LoopSettings {

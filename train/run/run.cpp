@@ -229,8 +229,15 @@ class NetworkRun {
     const std::vector<float> targets = targets_of_training(),
                              weights = run_.scale.weights(run_.recipe.loss_power);
     trained.report = loop::train_network(*trained.network,
-                                         {run_.stream, trained.features, run_.split.train,
-                                          run_.split.validation, targets, known_.scaled, weights},
+                                         {run_.stream,
+                                          trained.features,
+                                          run_.split.train,
+                                          run_.split.validation,
+                                          targets,
+                                          known_.scaled,
+                                          weights,
+                                          {},
+                                          fresh_rows()},
                                          settings(name_), progress_);
     progress_.keep_chart();
     if (!trained.report.finished || (run_.recipe.posterior_epochs > 0 && !train_head(trained))) {
@@ -263,9 +270,9 @@ class NetworkRun {
     write_text(result, result_json(run_, parts).dump(2) + "\n");
     for (const char* kind : {".checkpoint", ".posterior.checkpoint"})
       std::filesystem::remove(std::filesystem::path(checkpoint_).replace_extension(kind));
-    progress_.line(fmt::format("{}; MSE {:.4g} on validation rows; best epoch {} of {}",
-                               scored(score, trained.report.seconds), seen, trained.report.best_epoch,
-                               trained.report.epochs));
+    progress.line(fmt::format("{}; MSE {:.4g} on validation rows; best epoch {} of {}",
+                              scored(score, trained.report.seconds), seen, trained.report.best_epoch,
+                              trained.report.epochs));
   }
 
  private:
@@ -286,6 +293,19 @@ class NetworkRun {
   [[nodiscard]] std::vector<float> targets() const {
     const RunRequest& r = run_.request;
     return scaled_targets(run_.stream.labels(), run_.scale, run_.split, r.shuffle_labels, r.seed);
+  }
+  /// Returns LoopData::fresh: rows of new events, with their targets.
+  [[nodiscard]] std::function<std::optional<loop::EpochRows>(std::size_t)> fresh_rows() const {
+    if (!run_.request.fresh) return {};
+    return [this](std::size_t epoch) -> std::optional<loop::EpochRows> {
+      data::StreamOptions options = run_.stream.options();
+      options.memory_limit -= run_.stream.bytes();
+      auto stream = run_.request.fresh(epoch, options);
+      if (!stream) return std::nullopt;
+      auto targets = scaled_targets(stream->labels(), run_.scale, run_.split, false, run_.request.seed);
+      auto rows = trainable(stream->labels(), run_);
+      return loop::EpochRows{std::move(stream), std::move(rows), std::move(targets)};
+    };
   }
   bool train_head(Trained& trained) {
     loop::TrainingProgress progress(name_ + ", posterior",

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 
@@ -37,6 +38,11 @@ struct RunRequest {
   std::chrono::milliseconds patience{5000};  ///< waiting time if another process works on this run
   std::function<bool()> stop = {};           ///< polled before each batch; empty: stop_asked()
   const mpi::items::Ranks* ranks = nullptr;  ///< ranks that train together; null: this process alone
+  /// Returns the stream of new events for an epoch, from 1; null if a signal asks to stop. Empty: every epoch
+  /// reads the same training rows.
+  std::function<std::shared_ptr<const data::ShardStream>(std::size_t epoch,
+                                                         const data::StreamOptions& options)>
+      fresh = {};
 };
 
 enum class RunOutcome { done, already_done, stopped };

@@ -3,6 +3,7 @@
 #include "train/loop/loop.hpp"
 
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 
 #include "base/json.hpp"
@@ -125,6 +126,46 @@ void expect_resumed_run_equals_unbroken(const std::string& name) {
 TEST(Training, ResumedRunEqualsAnUnbrokenOneBitForBit) { expect_resumed_run_equals_unbroken("cnn"); }
 TEST(TrainingFull, ResumedRunEqualsAnUnbrokenOneBitForBit_WithRecurrentNetwork) {
   expect_resumed_run_equals_unbroken("gru");
+}
+
+TEST(Training, ReadsNewRowsInEachEpochAfterTheFirst) {
+  const World world("old_rows", 150), other("new_rows", 200);
+  const Prepared p(world), of_other(other);
+  const networks::NetworkShape shape{2, 16, 3, {2.0f, 2.0f, 1.0f}};
+  const json run = {{"test", 1}};
+  std::vector<std::size_t> asked;
+  bool stop = false;
+  const auto train = [&](const std::string& checkpoint, bool fresh) {
+    loop::seed_torch(9);
+    const auto network = networks::make_network("cnn", shape);
+    loop::LoopSettings settings;
+    settings.recipe = recipe(4);
+    settings.checkpoint = world.folder.path / checkpoint;
+    settings.run = &run;
+    loop::LoopData data = p.data;
+    if (fresh)
+      data.fresh = [&](std::size_t epoch) -> std::optional<loop::EpochRows> {
+        asked.push_back(epoch);
+        if (stop && epoch == 2) return std::nullopt;
+        const auto first = of_other.split.train.begin() + static_cast<std::ptrdiff_t>(epoch);
+        return loop::EpochRows{{std::shared_ptr<const void>(), &other.stream},
+                               {first, of_other.split.train.end()},
+                               of_other.targets};
+      };
+    loop::TrainingProgress progress("test", 1, true);
+    const loop::LoopReport report = loop::train_network(*network, data, settings, progress);
+    EXPECT_EQ(report.finished, !stop);
+    return loop::predict(*network, world.stream, p.features, p.split.test);
+  };
+  const auto old = train("old", false), expected = train("new", true);
+  EXPECT_NE(old, expected);
+  EXPECT_EQ(asked, (std::vector<std::size_t>{1, 2, 3}));
+  stop = true;
+  train("stopped", true);
+  stop = false;
+  asked.clear();
+  EXPECT_EQ(train("stopped", true), expected);
+  EXPECT_EQ(asked, (std::vector<std::size_t>{2, 3}));
 }
 
 TEST(Training, KillLosesAtMostTheCurrentEpoch) {

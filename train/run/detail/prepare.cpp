@@ -58,4 +58,19 @@ PreparedRun prepare(const data::ShardStream& stream, const RunRequest& r) {
   return {stream, r, recipe, std::move(whole), std::move(training), std::move(split), std::move(scale)};
 }
 
+std::vector<std::uint64_t> trainable(const data::Labels& labels, const PreparedRun& run) {
+  const RunRequest& r = run.request;
+  std::vector<std::uint64_t> rows;
+  for (std::uint64_t row = r.experiment.across ? labels.judged : 0; row < labels.rows; ++row) {
+    const std::int32_t of = labels.generator[row];
+    if (of != r.generator && of != r.judged &&
+        std::ranges::find(run.split.set_aside, of) == run.split.set_aside.end())
+      rows.push_back(row);
+  }
+  if (rows.empty())
+    throw InputError({"no training rows in an epoch", "--fresh-rows",
+                      "every new event was rejected, or all generators are left out", "raise --draws"});
+  return rows;
+}
+
 }  // namespace swingbank::train::run

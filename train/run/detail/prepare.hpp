@@ -25,4 +25,9 @@ bool is_trained(const RunRequest& request);
 /// but the dataset is not on disk.
 PreparedRun prepare(const data::ShardStream& stream, const RunRequest& request);
 
+/// Returns the rows of a stream of new events that may be trained on: all but those of the generators left
+/// out or set aside; with a split across datasets, those of the training dataset only. Throws InputError if
+/// there are none.
+std::vector<std::uint64_t> trainable(const data::Labels& labels, const PreparedRun& run);
+
 }  // namespace swingbank::train::run

@@ -69,6 +69,7 @@ json identity(const data::ShardStream& stream, const RunRequest& r) {
   if (p.recipe.seconds_as_steps) all["seconds_as_steps"] = true;
   if (p.recipe.regressions) all["regressions"] = true;
   if (!t.steps_from.empty()) all["steps_from"] = t.steps_from;
+  if (r.fresh) all["fresh_rows"] = true;
   if (t.noise_levels)
     all["training_noise"] = {t.noise_levels->low, t.noise_levels->high, t.noise_levels->share_at_zero};
   if (t.posterior_epochs > 0) {
