@@ -2,27 +2,29 @@
 # Runs one experiment from its config to its tables; finished parts are skipped. The quickstart, the
 # nightly benchmark and the Slurm jobs use this script.
 #   bash jobs/run_experiment.sh [--experiment FILE] [--preset NAME] [--out FOLDER] [--stage STAGE] [--task N]
-#                               [--network NAME] [--seed N] [--ranks N] [--launcher WORDS] [--build FOLDER] [--seconds N]
-#                               [--any-maker 0|1]
+#                               [--network NAME] [--seed N] [--seeds N] [--ranks N] [--launcher WORDS] [--build FOLDER]
+#                               [--seconds N] [--any-maker 0|1]
 #     --stage     check, databank, generate, train, tables, or all (default: all); count-tasks prints the number of
-#                 tasks of the stage train: one per combination of network, noise level and fold, and one per
-#                 combination of network and share of the training rows
+#                 tasks of the stage train: for each seed, one per combination of network, noise level and fold, and
+#                 one per combination of network and share of the training rows
 #     --task      number of the only task of the stage train to run, from 0
 #     --network   the only network or method of the stage train (default: all)
 #     --seed      seed of the training (default 1)
+#     --seeds     number of seeds, from --seed on; the tables give the mean and the standard deviation (default 1)
 #     --ranks     number of MPI processes that generate (default: one per core)
 #     --launcher  command that starts these processes (default mpirun)
 #     --build     build folder (default build/release)
 #     --seconds   save and end after this time [s] with exit code 2 (default: no limit)
 #     --any-maker 1: keep results and checkpoints of other software (default 0: refuse them)
-# $SWINGBANK_EXPERIMENT, $SWINGBANK_PRESET, $SWINGBANK_OUT and $SWINGBANK_BUILD are the defaults of the options.
+# $SWINGBANK_EXPERIMENT, $SWINGBANK_PRESET, $SWINGBANK_OUT, $SWINGBANK_SEEDS and $SWINGBANK_BUILD are the defaults of
+# the options.
 # Exit codes: 0 done, 1 failed, 2 saved on a signal (run it again to continue).
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 experiment=${SWINGBANK_EXPERIMENT:-} preset=${SWINGBANK_PRESET:-quick} out=${SWINGBANK_OUT:-}
 build=${SWINGBANK_BUILD:-$source_folder/build/release}
-stage=all task='' network='' seed=1 ranks=$(nproc) launcher=mpirun seconds='' any_maker=0
+stage=all task='' network='' seed=1 seeds=${SWINGBANK_SEEDS:-1} ranks=$(nproc) launcher=mpirun seconds='' any_maker=0
 # shellcheck source=jobs/run_saving.bash
 source "$source_folder/jobs/run_saving.bash"
 while (($#)); do
@@ -34,12 +36,13 @@ while (($#)); do
     --task) task=${2:?} ;;
     --network) network=${2:?} ;;
     --seed) seed=${2:?} ;;
+    --seeds) seeds=${2:?} ;;
     --ranks) ranks=${2:?} ;;
     --launcher) launcher=${2:?} ;;
     --build) build=${2:?} ;;
     --seconds) seconds=${2:?} ;;
     --any-maker) any_maker=${2:?} ;;
-    -h | --help) sed -n '2,19p' "$0"; exit 0 ;;
+    -h | --help) sed -n '2,21p' "$0"; exit 0 ;;
     *) echo "unknown option at '$1' (jobs/run_experiment.sh has no such option): run it with --help" >&2; exit 1 ;;
   esac
   shift 2
@@ -50,6 +53,10 @@ if [[ -z $experiment ]]; then
 fi
 if [[ -n $seconds && ! $seconds =~ ^[1-9][0-9]*$ ]]; then
   echo "no time at --seconds $seconds (it must be a whole number of seconds above 0): give one like 3600" >&2
+  exit 1
+fi
+if [[ ! $seed =~ ^[0-9]+$ || ! $seeds =~ ^[1-9][0-9]*$ ]]; then
+  echo "no seeds at --seed $seed, --seeds $seeds (whole numbers, the second above 0): give for example 1 and 3" >&2
   exit 1
 fi
 if [[ ! $any_maker =~ ^[01]$ ]]; then
@@ -127,9 +134,10 @@ generate() {
   generate_events "$config" "$draws" "$(training_folder)"
 }
 
+# run_task SEED NETWORK NOISE FOLD [SHARE OF THE TRAINING ROWS]
 run_task() {
-  local network=$1 noise=$2 fold=$3 share=${4:-} common with_more
-  say "$network, noise $noise, fold $fold${share:+, share $share of the training rows}"
+  local seed=$1 network=$2 noise=$3 fold=$4 share=${5:-} common with_more
+  say "$network, noise $noise, fold $fold${share:+, share $share of the training rows}, seed $seed"
   common=("$(dataset_folder)" --experiment "$experiment" --preset "$preset" --seed "$seed" --network "$network" --noise "$noise"
     --out "$out/results")
   if [[ -n $share ]]; then common+=(--train-share "$share"); fi
@@ -143,6 +151,14 @@ run_task() {
   fi
 }
 
+# of_all_seeds TASKS: prints each task once for every seed, which precedes it
+of_all_seeds() {
+  local of line
+  for ((of = seed; of < seed + seeds; ++of)); do
+    while read -r line; do echo "$of $line"; done <<<"$1"
+  done
+}
+
 train() {
   local all lines line
   all=$(ask tasks)
@@ -152,7 +168,7 @@ train() {
   fi
     # If all tasks run here, one process trains all folds of a network, so that the dataset is read once.
   if [[ -z $task ]]; then all=$(sed -E 's/^([^ ]+ [^ ]+) [0-9]+$/\1 all/' <<<"$all" | uniq); fi
-  mapfile -t lines <<<"$all"
+  mapfile -t lines < <(of_all_seeds "$all")
   if [[ -n $task ]]; then
     if [[ ! $task =~ ^[0-9]+$ ]] || ((task >= ${#lines[@]})); then
       echo "no such task at --task $task (the experiment has ${#lines[@]}, counted from 0): give a lower number" >&2
@@ -161,7 +177,7 @@ train() {
     lines=("${lines[task]}")
   fi
   for line in "${lines[@]}"; do
-    # shellcheck disable=SC2086 # words: network, noise, fold, and the share of the training rows if less than all
+    # shellcheck disable=SC2086 # words: seed, network, noise, fold, and the share of the training rows if less than all
     run_task $line || return $?
   done
 }
@@ -174,7 +190,7 @@ tables() {
 ask table >/dev/null # reports errors of the experiment before any work
 case $stage in
   check) ;;
-  count-tasks) ask tasks | wc -l ;;
+  count-tasks) echo "$(($(ask tasks | wc -l) * seeds))" ;;
   databank | generate | train | tables)
     mkdir -p "$out"
     "$stage"

@@ -86,6 +86,9 @@ exec 8>&-
 refuses "no date" '--date tomorrow' night tomorrow "$work/tiny.toml"
 experiment=(bash "$SWINGBANK_SOURCE/jobs/run_experiment.sh" --experiment "$work/tiny.toml")
 refuses "no seconds" '--seconds soon' "${experiment[@]}" --seconds soon
+refuses "no seeds" '--seeds 0' "${experiment[@]}" --seeds 0
+"${experiment[@]}" --network gru --seeds 2 --ranks 2 --out "$work/seeds" >"$work/log" 2>&1 || fail "two seeds: $(tail "$work/log")"
+grep -q '^| GRU | .* ± .* ² |$' "$work/seeds/tables/tables.md" || fail "no mean of two seeds: $(cat "$work/seeds/tables/tables.md")"
 refuses "no switch" '--any-maker yes' "${experiment[@]}" --any-maker yes
 refuses "no hours" '--hours none' night 2026-02-03 --hours none "$work/tiny.toml"
 
