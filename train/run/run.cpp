@@ -159,8 +159,11 @@ RunOutcome run_direct(const PreparedRun& run, const std::filesystem::path& resul
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   report.processor_seconds = static_cast<double>(std::clock() - processor) / CLOCKS_PER_SEC;
   const loop::Score score = judge(found, run, rows);
-  const json several = r.network == "floor" ? json() : several_json(run.stream.labels(), rows, found);
-  write_text(result, result_json(run, {nullptr, report, score, {}, {}, several}).dump(2) + "\n");
+  const bool estimates_rows = r.network != "floor";
+  const json several = estimates_rows ? several_json(run.stream.labels(), rows, found) : json();
+  const std::span<const double> listed =
+      estimates_rows ? std::span<const double>(found) : std::span<const double>();
+  write_text(result, result_json(run, {nullptr, report, score, {}, {}, several, listed}).dump(2) + "\n");
   progress.line(scored(score, report.seconds));
   return RunOutcome::done;
 }
@@ -266,7 +269,7 @@ class NetworkRun {
     const json believed = head ? judge_posterior(run_, trained) : json();
     const json several = several_json(run_.stream.labels(), split.test, found,
                                       head ? product_of_posteriors(run_, trained) : FromSeveral());
-    const RunParts parts = {&trained.features, trained.report, score, seen, believed, several};
+    const RunParts parts = {&trained.features, trained.report, score, seen, believed, several, found};
     write_text(result, result_json(run_, parts).dump(2) + "\n");
     for (const char* kind : {".checkpoint", ".posterior.checkpoint"})
       std::filesystem::remove(std::filesystem::path(checkpoint_).replace_extension(kind));

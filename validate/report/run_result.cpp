@@ -60,7 +60,26 @@ void read_parameters(Object& o, const std::string& where, RunResult& r, Problems
     p.get("variance", score.variance);
     if (item.contains("relative") && item["relative"].is_number())
       score.relative = item["relative"].get<double>();
+    if (item.contains("examples")) {
+      Object examples(item["examples"], where + " examples", problems);
+      examples.get("truth", score.truth);
+      examples.get("estimate", score.estimate);
+      if (score.truth.size() != score.estimate.size())
+        examples.fault("estimate", "it has another length than 'truth'");
+    }
     r.parameters.push_back(std::move(score));
+  }
+}
+
+/// Reads key `curve` of train/run/README.md.
+void read_curve(Object& o, const std::string& where, RunResult& r, Problems& problems) {
+  if (!o.value().contains("curve")) return;
+  if (!o.value()["curve"].is_array()) return o.fault("curve", "it is not a list");
+  for (const auto& item : o.value()["curve"]) {
+    Object one(item, where + " curve", problems);
+    EpochResult& e = r.curve.emplace_back();
+    one.get("epoch", e.epoch);
+    one.get("validation_loss", e.validation);
   }
 }
 
@@ -151,6 +170,7 @@ RunResult read_result(const fs::path& file, Problems& problems) {
   o.get("software", r.software);
   o.get("blas", r.blas);
   if (parsed.contains("train_share")) o.get("train_share", r.share);
+  read_curve(o, file.string(), r, problems);
   read_coverage(o, file.string(), r, problems);
   read_several(o, file.string(), r, problems);
   read_parameters(o, file.string(), r, problems);

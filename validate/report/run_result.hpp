@@ -15,6 +15,14 @@ struct ParameterResult {
   std::string name, unit;          ///< name of the parameter; its unit
   double mse = 0, variance = 0;    ///< mean squared error and variance over the test rows [unit^2]
   std::optional<double> relative;  ///< mse / variance; none for a constant parameter
+  /// True and estimated values of some test rows [unit]; empty for a constant parameter, the floor, and in
+  /// results of former versions.
+  std::vector<double> truth, estimate;
+};
+/// Errors after one epoch of a training.
+struct EpochResult {
+  std::int64_t epoch = 0;  ///< number of the epoch, from 1
+  double validation = 0;   ///< validation error, weighted as the training loss [scaled units]
 };
 /// Coverage of the posterior intervals with probability `nominal`.
 struct Coverage {
@@ -59,6 +67,7 @@ struct RunResult {
   double H_ratio = 0;                       ///< ratio for H alone; NaN if H is constant
   std::optional<RowScatter> scatter;        ///< none in results of former versions
   std::vector<ParameterResult> parameters;  ///< scores of the parameters
+  std::vector<EpochResult> curve;           ///< learning curve; empty: nothing was trained
   std::vector<Coverage> coverage;           ///< empty: the method gives no intervals
   std::vector<SeveralRecords> several;      ///< empty: no plant has three test records
   bool shuffled = false;                    ///< control run with shuffled labels

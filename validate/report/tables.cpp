@@ -263,6 +263,13 @@ void add_task(const Task& task, const std::string& stem, Report& to) {
                  ? "Mean squared error of each method."
                  : "Mean squared error of each method. Large markers: mean; small markers: each excluded "
                    "generator.");
+  to.picture(
+      stem + "-curves.svg", curve_picture(task),
+      "Validation error of each network after each epoch, mean over the runs. The error is weighted as in the "
+      "training of that network; predicting the mean has about 1.");
+  to.picture(stem + "-truth.svg", truth_picture(task),
+             "Estimates against true values of test rows, without noise, for the parameters with the largest "
+             "variance. They determine most of the MSE.");
   for (const double level : task.levels())
     if (!task.generators().empty()) {
       to.document.add(generator_table(task, level));

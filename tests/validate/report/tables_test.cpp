@@ -314,6 +314,34 @@ TEST_F(TablesTest, PlotsAreFilesForMarkdownAndInlineInHtml) {
   }
   EXPECT_THAT(report.pictures[2].second, AllOf(HasSubstr("CNN, no noise"), HasSubstr("nominal")));
 }
+TEST_F(TablesTest, PlotsLearningCurvesAndEstimatesAgainstTruth) {
+  json cnn = result("V", "cnn", 30, 0.4), mlp = result("V", "mlp", 30, 0.1),
+       algebra = result("V", "closed-form", 30, 0.01);
+  for (json* r : {&cnn, &mlp, &algebra})
+    (*r)["per_parameter"][0]["examples"] = {{"truth", {2.0, 4.0, 8.0}}, {"estimate", {3.0, 4.5, 7.0}}};
+  for (json* r : {&cnn, &mlp})
+    (*r)["curve"] = {{{"epoch", 1}, {"validation_loss", 0.5}}, {{"epoch", 2}, {"validation_loss", 0.2}}};
+  write("a", cnn);
+  write("b", mlp);
+  write("c", algebra);
+  const auto report = make_tables(read(), {});
+  ASSERT_EQ(report.pictures.size(), 4u);
+  EXPECT_EQ(report.pictures[1].first, "V-curves.svg");
+  const std::string& truth = report.pictures[2].second;
+  EXPECT_EQ(report.pictures[2].first, "V-truth.svg");
+  EXPECT_THAT(report.pictures[1].second, AllOf(HasSubstr("CNN, no noise"), HasSubstr("MLP, no noise")));
+  EXPECT_THAT(truth, AllOf(HasSubstr("CNN"), HasSubstr("MLP"), HasSubstr("true value [s]"),
+                           Not(HasSubstr("Xdpp")), Not(HasSubstr("closed"))));
+  mlp["per_parameter"][0]["examples"]["estimate"] = {3.0};
+  mlp["curve"][0].erase("epoch");
+  write("b", mlp);
+  try {
+    read();
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), AllOf(HasSubstr("another length than 'truth'"), HasSubstr("key 'epoch'")));
+  }
+}
 TEST_F(TablesTest, WarnsAboutResultsOfDifferentSoftware) {
   write("a", result("V", "cnn", 30, 0.1));
   auto other = result("V", "cnn", 31, 0.1);

@@ -27,6 +27,21 @@ json input_json(const data::ShardStream& stream, const RunRequest& request, cons
 std::string kernels(const RunRequest& r) {
   return fmt::format("{}, LibTorch {}", r.runtime.blas, r.runtime.loops);
 }
+constexpr std::size_t kExamples = 200;  ///< largest number of test rows whose estimates a result lists
+
+/// Returns truth and estimate of a parameter for evenly spaced test rows, with four digits.
+json examples(const PreparedRun& run, std::span<const double> estimates, std::size_t parameter) {
+  const data::Labels& labels = run.stream.labels();
+  const std::vector<std::uint64_t>& rows = run.split.test;
+  const std::size_t every = (rows.size() + kExamples - 1) / kExamples;
+  const auto rounded = [](double value) { return std::stod(fmt::format("{:.4g}", value)); };
+  json truth = json::array(), estimate = json::array();
+  for (std::size_t i = 0; i < rows.size(); i += every) {
+    truth.push_back(rounded(labels.values[rows[i] * labels.parameters + parameter]));
+    estimate.push_back(rounded(estimates[i * labels.parameters + parameter]));
+  }
+  return {{"truth", truth}, {"estimate", estimate}};
+}
 }  // namespace
 
 std::string dataset_name(const mpi::store::Dataset& d) {
@@ -83,7 +98,8 @@ json result_json(const PreparedRun& run, const RunParts& parts) {
   const RunRequest& r = run.request;
   const mpi::store::Dataset& d = run.stream.dataset();
   json parameters = json::array();
-  for (const auto& p : parts.score.parameters)
+  for (const auto& p : parts.score.parameters) {
+    const std::size_t index = parameters.size();
     parameters.push_back({{"name", p.name},
                           {"unit", p.unit},
                           {"mse", p.mse},
@@ -91,6 +107,9 @@ json result_json(const PreparedRun& run, const RunParts& parts) {
                           {"variance", p.variance},
                           {"box_variance", p.box_variance},
                           {"relative", or_null(p.relative())}});
+    if (!parts.estimates.empty() && p.relative())
+      parameters.back()["examples"] = examples(run, parts.estimates, index);
+  }
   json result = {
       {"table", r.experiment.table},
       {"title", r.experiment.title},

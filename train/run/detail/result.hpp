@@ -1,6 +1,8 @@
 #pragma once
 // JSON result of one run; train/run/README.md lists its keys.
 
+#include <span>
+
 #include "base/json.hpp"
 #include "train/run/detail/prepare.hpp"
 
@@ -20,6 +22,8 @@ struct RunParts {
   std::optional<double> seen_mse = {};  ///< MSE of the validation rows [raw units^2]
   nlohmann::json posterior = {};        ///< null: no posterior
   nlohmann::json several = {};          ///< null: no plant with three test rows
+  /// Estimates of the test rows, rows x parameters [raw units]; empty: the method gives none.
+  std::span<const double> estimates = {};
 };
 nlohmann::json result_json(const PreparedRun& run, const RunParts& parts);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "base/constants.hpp"
@@ -19,6 +20,27 @@ using Mark = PlotSeries::Mark;
 /// Returns the offset of mark i in a row, so that marks do not overlap.
 double aside(std::size_t i, std::size_t count) {
   return count < 2 ? 0 : 0.5 * (static_cast<double>(i) / static_cast<double>(count - 1) - 0.5);
+}
+
+constexpr std::array<std::string_view, 3> kOfThesis = {"cnn", "lstm", "gru"};
+constexpr std::size_t kPanels = 4;  ///< largest number of parameters in truth_picture()
+
+/// Returns the trained method with the lowest MSE without noise, whose runs list estimates; empty: none.
+std::string best_network(const Task& task, bool of_thesis) {
+  std::string best;
+  double lowest = 0;
+  for (const auto& m : task.methods()) {
+    if (of_thesis && std::ranges::find(kOfThesis, m) == kOfThesis.end()) continue;
+    const auto runs = runs_of(task, {m, 0});
+    const auto lists = [](const RunResult* r) {
+      return !r->curve.empty() &&
+             std::ranges::any_of(r->parameters, [](const auto& p) { return !p.truth.empty(); });
+    };
+    if (runs.empty() || !std::ranges::all_of(runs, lists)) continue;
+    const double mse = figure_of(task, {m, 0})->mse;
+    if (best.empty() || mse < lowest) best = m, lowest = mse;
+  }
+  return best;
 }
 
 }  // namespace
@@ -48,6 +70,68 @@ std::string method_picture(const Task& task) {
     plot.series.push_back(std::move(mean));
   }
   return svg({plot});
+}
+
+std::string curve_picture(const Task& task) {
+  Plot plot{"Learning curves", {"epoch"}, {"validation error", true}, {}};
+  plot.width = 480;
+  const auto methods = task.methods();
+  for (std::size_t m = 0; m < methods.size(); ++m)
+    for (const double level : task.levels()) {
+      std::map<std::int64_t, std::vector<double>> at;  // by epoch
+      for (const auto* r : runs_of(task, {methods[m], level}))
+        for (const auto& e : r->curve) at[e.epoch].push_back(e.validation);
+      if (at.empty()) continue;
+      PlotSeries s{fmt::format("{}, {}", method_name(methods[m]), level_name(level)), plot_colour(m)};
+      s.line = true;
+      for (const auto& [epoch, values] : at) {
+        double sum = 0;
+        for (const double v : values) sum += v;
+        s.points.emplace_back(static_cast<double>(epoch), sum / static_cast<double>(values.size()));
+      }
+      plot.series.push_back(std::move(s));
+      break;
+    }
+  return plot.series.empty() ? std::string() : svg({plot});
+}
+
+std::string truth_picture(const Task& task) {
+  std::vector<std::string> methods;
+  for (const bool of_thesis : {true, false})
+    if (const auto m = best_network(task, of_thesis);
+        !m.empty() && std::ranges::find(methods, m) == methods.end())
+      methods.push_back(m);
+  if (methods.empty()) return {};
+  std::vector<const ParameterResult*> largest;  // with varying values
+  const auto runs = runs_of(task, {methods.front(), 0});
+  for (const auto& p : runs.front()->parameters)
+    if (!p.truth.empty()) largest.push_back(&p);
+  std::ranges::stable_sort(largest, std::greater(), &ParameterResult::variance);
+  largest.resize(std::min(largest.size(), kPanels));
+  std::vector<Plot> panels;
+  for (const ParameterResult* panel : largest) {
+    Plot plot{panel->name, {fmt::format("true value [{}]", panel->unit)}, {"estimate"}, {}};
+    plot.width = largest.size() > 2 ? 175 : 330;
+    double low = panel->truth.front(), high = low;
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+      PlotSeries s{method_name(methods[m]), plot_colour(m)};
+      s.size = 1.8, s.opacity = 0.5;
+      for (const auto* r : runs_of(task, {methods[m], 0}))
+        for (const auto& p : r->parameters)
+          for (std::size_t i = 0; p.name == panel->name && i < p.truth.size(); ++i) {
+            s.points.emplace_back(p.truth[i], p.estimate[i]);
+            low = std::min({low, p.truth[i], p.estimate[i]});
+            high = std::max({high, p.truth[i], p.estimate[i]});
+          }
+      plot.series.push_back(std::move(s));
+    }
+    PlotSeries right{"exact", "#1b2733", {{low, low}, {high, high}}, Mark::none};
+    right.line = right.dashed = true;
+    plot.series.push_back(std::move(right));
+    plot.x.range = plot.y.range = {low, high};
+    panels.push_back(std::move(plot));
+  }
+  return svg(panels);
 }
 
 std::string parameter_picture(const Task& task) {
