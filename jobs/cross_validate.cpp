@@ -60,7 +60,7 @@ int run(CommandLine& line, int argc, char** argv) {
            "number of processes for the folds; the threads are divided among them (default: one "
            "per core; 1 if mpirun or srun started several)");
   const auto check = [&](const train::run::RunRequest& request) {
-    if (!request.experiment.leave_one_out)
+    if (request.experiment.split != train::loop::Split::leave_one_out)
       throw InputError({"this experiment has no folds", options.experiment,
                         "its split does not leave out single generators", "use swingbank train"});
     if (processes < 0)

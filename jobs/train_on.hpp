@@ -16,7 +16,7 @@ inline int train_main(CommandLine& line, int argc, char** argv,
   TrainingOptions options;
   line.add_flag("--watch", options.watch, "draw the learning curve on the terminal, after each epoch");
   const auto check = [&](const train::run::RunRequest& request) {
-    if (request.experiment.leave_one_out)
+    if (request.experiment.split == train::loop::Split::leave_one_out)
       throw InputError({"this experiment has folds, one for each generator left out", options.experiment,
                         "its split is leave-one-generator-out", "use swingbank cross-validate"});
     if (options.watch && isatty(STDERR_FILENO) == 0)

@@ -83,12 +83,15 @@ void require_rows(const RowSplit& split, std::size_t points) {
                       "training, validation and test each need some", "generate more draws"});
 }
 
-}  // namespace
-
-RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
+std::vector<std::uint64_t> own_rows(const Labels& labels) {
   std::vector<std::uint64_t> all(labels.judged);
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-  auto points = points_of(labels, all);
+  std::iota(all.begin(), all.end(), std::uint64_t{0});
+  return all;
+}
+
+/// Splits groups of rows: 60 % training, 20 % validation, 20 % test.
+RowSplit split_groups(const Labels& labels, std::vector<std::vector<std::uint64_t>> points,
+                      std::uint64_t seed) {
   shuffle(points, key(seed, Purpose::split));
   const std::size_t train = share(points.size(), 0.6), validation = share(points.size(), 0.8);
   RowSplit split{rows_of(points, 0, train), rows_of(points, train, validation),
@@ -96,6 +99,18 @@ RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
   require_rows(split, points.size());
   add_training_rows(labels, {}, split);
   return split;
+}
+
+}  // namespace
+
+RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
+  return split_groups(labels, points_of(labels, own_rows(labels)), seed);
+}
+
+RowSplit split_by_row(const Labels& labels, std::uint64_t seed) {
+  std::vector<std::vector<std::uint64_t>> rows;
+  for (const std::uint64_t row : own_rows(labels)) rows.push_back({row});
+  return split_groups(labels, std::move(rows), seed);
 }
 
 RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan) {

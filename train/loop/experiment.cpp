@@ -303,19 +303,17 @@ Experiment read_experiment(Config& c) {
     e.training_dataset =
         c.file("training_dataset",
                {.meaning = "config of additional training rows, relative to the folder of this file"});
-  const std::string split =
-      c.choice("split", {"leave-one-generator-out", "by-databank-point", "across-datasets"},
-               Range{.meaning = "split into training and test rows"});
-  e.leave_one_out = split == "leave-one-generator-out";
-  e.across = split == "across-datasets";
-  if (e.leave_one_out)
+  const std::string split = c.choice("split", {kSplits.begin(), kSplits.end()},
+                                     Range{.meaning = "split into training and test rows"});
+  e.split = static_cast<Split>(std::ranges::find(kSplits, split) - kSplits.begin());
+  if (e.split == Split::leave_one_out)
     for (const auto g : c.require<std::vector<std::int64_t>>(
              "folds", {1, 1e9, "", "bus numbers of generators to leave out, one fold each"}))
       e.folds.push_back(static_cast<std::int32_t>(g));
   for (const auto& name : c.keys("preset")) {
     e.presets[name] = read_preset(c, name);
     for (const auto& [network, training] : e.presets[name].training)
-      if (e.across && !training.training_rows)
+      if (e.split == Split::across && !training.training_rows)
         c.problem("preset." + name, fmt::format("no training rows for {}", network),
                   "the split across-datasets trains on training_dataset only",
                   "add training_rows = true to the preset");

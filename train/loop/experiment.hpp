@@ -77,15 +77,19 @@ struct Task {
 inline constexpr std::array<const char*, 8> kPrintable = {
     "table", "dataset", "draws", "training_dataset", "training_draws", "training_rows", "networks", "tasks"};
 
+/// Split of the rows, in the order of kSplits (train/data/split.hpp).
+enum class Split { by_point, by_row, leave_one_out, across };
+inline constexpr std::array<const char*, 4> kSplits = {"by-databank-point", "by-row",
+                                                       "leave-one-generator-out", "across-datasets"};
+
 struct Experiment {
   std::filesystem::path file;
   std::string table;  ///< "IV", "V" or "VI" of the thesis, else the file's name; part of result names
   std::string title;
   std::filesystem::path dataset;           ///< config of the dataset
   std::filesystem::path training_dataset;  ///< config of additional training rows; empty: none
-  bool leave_one_out = false;              ///< leave-one-out split; if neither this nor `across`: 60/20/20
-  bool across = false;                     ///< trains on training_dataset, tests on the whole `dataset`
-  std::vector<std::int32_t> folds;         ///< generators (bus numbers) to leave out, one per fold
+  Split split = Split::by_point;
+  std::vector<std::int32_t> folds;  ///< generators (bus numbers) to leave out, one per fold
   std::map<std::string, Preset> presets;
 
   /// Return a preset, or its settings for a network. Throw InputError that lists the available names.

@@ -228,6 +228,12 @@ TEST(Split, KeepsRowsOfADatabankPointTogether) {
     EXPECT_FALSE(points(split.validation).contains(p));
   }
   EXPECT_NE(split.test, split_by_point(stream.labels(), 2).test);
+  const RowSplit rows = split_by_row(stream.labels(), 1);
+  EXPECT_EQ(rows.train.size(), 240u);
+  EXPECT_EQ(rows.test.size(), 80u);
+  std::size_t known = 0;
+  for (const auto p : points(rows.test)) known += points(rows.train).contains(p) ? 1 : 0;
+  EXPECT_GT(known, points(rows.test).size() / 2);
 }
 
 TEST(Split, KeepsRowsOfAnEventTogether) {

@@ -143,8 +143,7 @@ TEST(Experiment, AcrossDatasetsEveryNetworkUsesTheTrainingRows) {
     return read_experiment(folder / "across.toml");
   };
   const Experiment e = across("training_rows = true\n");
-  EXPECT_TRUE(e.across);
-  EXPECT_FALSE(e.leave_one_out);
+  EXPECT_EQ(e.split, Split::across);
   EXPECT_EQ(e.print("quick", "training_rows"), "gru\nmlp\nfloor");
   EXPECT_EQ(e.print("quick", "tasks"),
             "gru 0 none\ngru 0.001 none\nmlp 0 none\nmlp 0.001 none\nfloor 0.001 none");

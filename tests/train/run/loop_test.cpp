@@ -42,7 +42,7 @@ loop::TrainingRecipe recipe(std::size_t epochs) { return {epochs, 32, 1e-3, "cos
 RunRequest request(const World& world, const std::string& network, std::size_t epochs) {
   RunRequest r;
   r.experiment.table = "V";
-  r.experiment.leave_one_out = true;
+  r.experiment.split = loop::Split::leave_one_out;
   for (int g = 30; g < 40; ++g) r.experiment.folds.push_back(g);
   loop::Preset p;
   p.name = "quick";

@@ -32,8 +32,10 @@ data::RowSplit split_of(const data::Labels& labels, const RunRequest& r) {
   const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
   data::RowSplit split = r.generator ? data::leave_one_out(labels, {*r.generator, recipe.validation_share,
                                                                     r.seed, r.judged, recipe.set_aside})
-                         : r.experiment.across ? data::split_across(labels, recipe.validation_share, r.seed)
-                                               : data::split_by_point(labels, r.seed);
+                         : r.experiment.split == loop::Split::across
+                             ? data::split_across(labels, recipe.validation_share, r.seed)
+                         : r.experiment.split == loop::Split::by_row ? data::split_by_row(labels, r.seed)
+                                                                     : data::split_by_point(labels, r.seed);
   if (r.test_rows) thin(split.test, *r.test_rows);
   if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
   return split;
@@ -61,7 +63,8 @@ PreparedRun prepare(const data::ShardStream& stream, const RunRequest& r) {
 std::vector<std::uint64_t> trainable(const data::Labels& labels, const PreparedRun& run) {
   const RunRequest& r = run.request;
   std::vector<std::uint64_t> rows;
-  for (std::uint64_t row = r.experiment.across ? labels.judged : 0; row < labels.rows; ++row) {
+  for (std::uint64_t row = r.experiment.split == loop::Split::across ? labels.judged : 0; row < labels.rows;
+       ++row) {
     const std::int32_t of = labels.generator[row];
     if (of != r.generator && of != r.judged &&
         std::ranges::find(run.split.set_aside, of) == run.split.set_aside.end())

@@ -85,6 +85,7 @@ json identity(const data::ShardStream& stream, const RunRequest& r) {
   if (p.recipe.regressions) all["regressions"] = true;
   if (!t.steps_from.empty()) all["steps_from"] = t.steps_from;
   if (r.fresh) all["fresh_rows"] = true;
+  if (r.experiment.split == loop::Split::by_row) all["split"] = "by-row";
   if (t.noise_levels)
     all["training_noise"] = {t.noise_levels->low, t.noise_levels->high, t.noise_levels->share_at_zero};
   if (t.posterior_epochs > 0) {
