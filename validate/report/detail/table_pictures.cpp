@@ -23,7 +23,8 @@ double aside(std::size_t i, std::size_t count) {
 }
 
 constexpr std::array<std::string_view, 3> kOfThesis = {"cnn", "lstm", "gru"};
-constexpr std::size_t kPanels = 4;  ///< largest number of parameters in truth_picture()
+constexpr std::size_t kPanels = 4;    ///< largest number of parameters in truth_picture()
+constexpr std::size_t kPoints = 400;  ///< approximate number of points of a method in a panel
 
 /// Returns the trained method with the lowest MSE without noise, whose runs list estimates; empty: none.
 std::string best_network(const Task& task, bool of_thesis) {
@@ -116,9 +117,12 @@ std::string truth_picture(const Task& task) {
     for (std::size_t m = 0; m < methods.size(); ++m) {
       PlotSeries s{method_name(methods[m]), plot_colour(m)};
       s.size = 1.8, s.opacity = 0.5;
-      for (const auto* r : runs_of(task, {methods[m], 0}))
+      const auto all = runs_of(task, {methods[m], 0});
+      const std::size_t each = std::max<std::size_t>(1, kPoints / all.size());
+      for (const auto* r : all)
         for (const auto& p : r->parameters)
-          for (std::size_t i = 0; p.name == panel->name && i < p.truth.size(); ++i) {
+          for (std::size_t i = 0; p.name == panel->name && i < p.truth.size();
+               i += std::max<std::size_t>(1, p.truth.size() / each)) {
             s.points.emplace_back(p.truth[i], p.estimate[i]);
             low = std::min({low, p.truth[i], p.estimate[i]});
             high = std::max({high, p.truth[i], p.estimate[i]});
