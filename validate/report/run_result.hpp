@@ -15,9 +15,10 @@ struct ParameterResult {
   std::string name, unit;          ///< name of the parameter; its unit
   double mse = 0, variance = 0;    ///< mean squared error and variance over the test rows [unit^2]
   std::optional<double> relative;  ///< mse / variance; none for a constant parameter
-  /// True and estimated values of some test rows [unit]; empty for a constant parameter, the floor, and in
-  /// results of former versions.
-  std::vector<double> truth, estimate;
+  /// True values of some test rows [unit]; empty for a constant parameter, the floor, and in results of
+  /// former versions.
+  std::vector<double> truth;
+  std::vector<double> estimate;  ///< estimates of these rows [unit]
 };
 /// Errors after one epoch of a training.
 struct EpochResult {

@@ -23,8 +23,8 @@ double aside(std::size_t i, std::size_t count) {
 }
 
 constexpr std::array<std::string_view, 3> kOfThesis = {"cnn", "lstm", "gru"};
-constexpr std::size_t kPanels = 4;    ///< largest number of parameters in truth_picture()
-constexpr std::size_t kPoints = 400;  ///< approximate number of points of a method in a panel
+constexpr std::size_t kPanels = 4;       ///< largest number of parameters in truth_picture()
+constexpr std::size_t kScattered = 400;  ///< approximate number of points of a method in a panel
 
 /// Returns the trained method with the lowest MSE without noise, whose runs list estimates; empty: none.
 std::string best_network(const Task& task, bool of_thesis) {
@@ -118,7 +118,7 @@ std::string truth_picture(const Task& task) {
       PlotSeries s{method_name(methods[m]), plot_colour(m)};
       s.size = 1.8, s.opacity = 0.5;
       const auto all = runs_of(task, {methods[m], 0});
-      const std::size_t each = std::max<std::size_t>(1, kPoints / all.size());
+      const std::size_t each = std::max<std::size_t>(1, kScattered / all.size());
       for (const auto* r : all)
         for (const auto& p : r->parameters)
           for (std::size_t i = 0; p.name == panel->name && i < p.truth.size();
