@@ -233,8 +233,11 @@ Preset read_preset(Config& c, const std::string& name) {
       value = static_cast<std::uint64_t>(c.require<std::int64_t>(at.path(key), {low, 1e12, "", meaning}));
   };
   events("draws", 1, "events to simulate", p.draws);
-  if (c.has("training_dataset"))
-    events("training_draws", 0, "events of training_dataset to simulate", p.training_draws);
+  const char* const more = "events of training_dataset to simulate; required if there is one";
+  if (c.name().empty())  // a schema is derived: the key must be optional
+    c.optional<std::int64_t>(at.path("training_draws"), 0, {0, 1e12, "", more});
+  else if (c.has("training_dataset"))
+    events("training_draws", 0, more, p.training_draws);
   const auto known = network_names();
   if (at.reads("networks"))
     p.networks = c.table_names(
