@@ -22,8 +22,6 @@
 namespace swingbank::validate::report {
 namespace {
 
-constexpr std::array<std::string_view, 3> kTableFourNetworks = {"cnn", "lstm", "gru"};
-
 /// Returns the shade of MSE / baseline: 0 at a ratio of 0.1, 1 at a ratio of 1, logarithmic between.
 double shade(double ratio) { return std::clamp(1 + std::log10(ratio), 0.0, 1.0); }
 
@@ -32,8 +30,7 @@ std::size_t table_rank(const std::string& table) {
   return static_cast<std::size_t>(at - kThesisTables.begin());
 }
 std::size_t network_rank(const std::string& network) {
-  return static_cast<std::size_t>(std::ranges::find(kTableFourNetworks, network) -
-                                  kTableFourNetworks.begin());
+  return static_cast<std::size_t>(std::ranges::find(kThesisNetworks, network) - kThesisNetworks.begin());
 }
 
 /// Key of a row: a network in Table IV, otherwise the excluded generator.

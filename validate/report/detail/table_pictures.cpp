@@ -22,7 +22,6 @@ double aside(std::size_t i, std::size_t count) {
   return count < 2 ? 0 : 0.5 * (static_cast<double>(i) / static_cast<double>(count - 1) - 0.5);
 }
 
-constexpr std::array<std::string_view, 3> kOfThesis = {"cnn", "lstm", "gru"};
 constexpr std::size_t kPanels = 4;       ///< largest number of parameters in truth_picture()
 constexpr std::size_t kScattered = 400;  ///< approximate number of points of a method in a panel
 
@@ -31,7 +30,7 @@ std::string best_network(const Task& task, bool of_thesis) {
   std::string best;
   double lowest = 0;
   for (const auto& m : task.methods()) {
-    if (of_thesis && std::ranges::find(kOfThesis, m) == kOfThesis.end()) continue;
+    if (of_thesis && std::ranges::find(kThesisNetworks, m) == kThesisNetworks.end()) continue;
     const auto runs = runs_of(task, {m, 0});
     const auto lists = [](const RunResult* r) {
       return !r->curve.empty() &&

@@ -6,6 +6,9 @@
 
 namespace swingbank::validate::report {
 
+/// Networks of the thesis.
+inline constexpr std::array<std::string_view, 3> kThesisNetworks = {"cnn", "lstm", "gru"};
+
 struct ThesisTable {
   std::string_view number, title, machine;
 };
