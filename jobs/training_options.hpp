@@ -65,7 +65,8 @@ struct TrainingOptions {
             "relative noise level L (0.001: 0.1 %): P, Q and V in pu of machine base, theta in rad; L/20 for speed; "
             "L times the value for Efd and Ifd")
         .shows_default();
-    line.add("--test-rows", test_rows, "evaluate on about N evenly spaced test rows (default: the preset's)");
+    line.add("--test-rows", test_rows,
+             "evaluate on N of the test rows, drawn at random (default: the preset's)");
     line.add("--train-share", train_share, "fraction of the training rows to train on").shows_default();
     line.add("--epochs", epochs, "number of epochs; overrides the preset");
     line.add(

@@ -22,7 +22,8 @@ enum class Purpose : std::uint64_t {
   labels,
   noise,
   noise_level,
-  set_aside
+  set_aside,
+  selection
 };
 constexpr std::uint64_t key(std::uint64_t seed, Purpose purpose, std::uint64_t a = 0, std::uint64_t b = 0) {
   return mix(mix(mix(mix(seed) ^ static_cast<std::uint64_t>(purpose)) ^ a) ^ b);

@@ -37,6 +37,11 @@ class Groups {
   std::vector<std::size_t> above_;
 };
 
+std::vector<double> parameters_of(const Labels& labels, std::uint64_t row) {
+  const auto first = labels.values.begin() + static_cast<std::ptrdiff_t>(row * labels.parameters);
+  return {first, first + static_cast<std::ptrdiff_t>(labels.parameters)};
+}
+
 /// Returns groups of rows that share a databank sample or an event, in order of first appearance.
 std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
                                                   const std::vector<std::uint64_t>& rows) {
@@ -44,8 +49,7 @@ std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
   std::map<std::uint64_t, std::size_t> event;
   Groups groups(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double* first = labels.values.data() + rows[i] * labels.parameters;
-    groups.join(i, point.try_emplace(std::vector<double>(first, first + labels.parameters), i).first->second);
+    groups.join(i, point.try_emplace(parameters_of(labels, rows[i]), i).first->second);
     groups.join(i, event.try_emplace(labels.sample_id[rows[i]], i).first->second);
   }
   std::map<std::size_t, std::vector<std::uint64_t>> found;  // by first row
@@ -55,14 +59,17 @@ std::vector<std::vector<std::uint64_t>> points_of(const Labels& labels,
   return points;
 }
 
-/// Appends the rows of the training dataset to the training rows; those of generators set aside become
-/// recalibration rows.
+/// Appends the rows of the training dataset to the training rows, except those with the parameters of a
+/// validation or test row; those of generators set aside become recalibration rows.
 void add_training_rows(const Labels& labels, const std::set<std::int32_t>& left_out, RowSplit& split) {
+  std::vector<std::uint64_t> more;
   for (std::uint64_t row = labels.judged; row < labels.rows; ++row) {
     if (left_out.contains(labels.generator[row])) continue;
     const bool aside = std::ranges::find(split.set_aside, labels.generator[row]) != split.set_aside.end();
-    (aside ? split.calibration : split.train).push_back(row);
+    (aside ? split.calibration : more).push_back(row);
   }
+  leave_out(more, labels, held_out(labels, split));
+  split.train.insert(split.train.end(), more.begin(), more.end());
 }
 
 std::vector<std::uint64_t> rows_of(const std::vector<std::vector<std::uint64_t>>& points, std::size_t begin,
@@ -102,6 +109,17 @@ RowSplit split_groups(const Labels& labels, std::vector<std::vector<std::uint64_
 }
 
 }  // namespace
+
+ParameterSets held_out(const Labels& labels, const RowSplit& split) {
+  ParameterSets sets;
+  for (const auto* part : {&split.validation, &split.test})
+    for (const std::uint64_t row : *part) sets.insert(parameters_of(labels, row));
+  return sets;
+}
+
+void leave_out(std::vector<std::uint64_t>& rows, const Labels& labels, const ParameterSets& sets) {
+  std::erase_if(rows, [&](std::uint64_t row) { return sets.contains(parameters_of(labels, row)); });
+}
 
 RowSplit split_by_point(const Labels& labels, std::uint64_t seed) {
   return split_groups(labels, points_of(labels, own_rows(labels)), seed);
@@ -144,16 +162,27 @@ RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan) {
 }
 
 RowSplit split_across(const Labels& labels, double validation_share, std::uint64_t seed) {
+  RowSplit split;
+  split.test = own_rows(labels);
   std::vector<std::uint64_t> others(labels.rows - labels.judged);
   std::iota(others.begin(), others.end(), labels.judged);
+  leave_out(others, labels, held_out(labels, split));
   auto points = points_of(labels, others);
   shuffle(points, key(seed, Purpose::split));
   const std::size_t validation = share(points.size(), validation_share);
-  RowSplit split{rows_of(points, validation, points.size()), rows_of(points, 0, validation), {}};
-  split.test.resize(labels.judged);
-  std::iota(split.test.begin(), split.test.end(), std::uint64_t{0});
+  split.validation = rows_of(points, 0, validation);
+  split.train = rows_of(points, validation, points.size());
   require_rows(split, points.size());
   return split;
+}
+
+std::vector<std::uint64_t> some_of(std::span<const std::uint64_t> rows, std::size_t most) {
+  std::vector<std::uint64_t> some(rows.begin(), rows.end());
+  if (some.size() <= most) return some;
+  shuffle(some, key(0, Purpose::selection));
+  some.resize(most);
+  std::ranges::sort(some);
+  return some;
 }
 
 void keep_share(RowSplit& split, const Labels& labels, double part) {

@@ -3,9 +3,13 @@
 // parameter values) or an event are not divided between training and validation. split_by_point does not
 // divide them between training and test either: training then contains neither a test sample with another
 // fault nor a test event at another machine. Others choose the test rows by generator or dataset;
-// split_by_row divides groups. Rows whose number is at least Labels::judged are never test rows.
+// split_by_row divides groups. Rows whose number is at least Labels::judged, those of the training dataset,
+// are never test rows. They are not training rows either if a validation or test row has the same parameters:
+// two datasets with the same seed and box contain the same databank samples.
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <span>
 #include <vector>
 
 #include "train/data/shard_stream.hpp"
@@ -18,6 +22,12 @@ struct RowSplit {
   std::vector<std::int32_t> set_aside = {};     ///< bus numbers of the generators used only for recalibration
   std::vector<std::uint64_t> calibration = {};  ///< rows of these generators
 };
+
+using ParameterSets = std::set<std::vector<double>>;
+/// Returns the parameter sets of the validation and test rows [raw units].
+ParameterSets held_out(const Labels& labels, const RowSplit& split);
+/// Removes the rows whose parameter set is one of `sets`.
+void leave_out(std::vector<std::uint64_t>& rows, const Labels& labels, const ParameterSets& sets);
 
 /// Splits the groups of the dataset's rows: 60 % training, 20 % validation, 20 % test. Rows from number
 /// Labels::judged on, those of the training dataset, are training rows. Throws InputError if a part is empty.
@@ -45,6 +55,9 @@ RowSplit leave_one_out(const Labels& labels, const LeaveOneOut& plan);
 /// number Labels::judged on, `validation_share` is for validation and the rest for training. Throws
 /// InputError if one of the three parts is empty.
 RowSplit split_across(const Labels& labels, double validation_share, std::uint64_t seed);
+/// Returns `most` of the rows, drawn at random, in their order; all rows if there are no more. Evenly spaced
+/// rows could all belong to a few generators, because the rows of an event's generators follow one another.
+std::vector<std::uint64_t> some_of(std::span<const std::uint64_t> rows, std::size_t most);
 /// Keeps a fraction of the training rows: the first rows of the dataset and of the training dataset, as if
 /// both datasets were smaller. Throws InputError if no row remains.
 void keep_share(RowSplit& split, const Labels& labels, double share);

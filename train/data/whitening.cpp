@@ -8,18 +8,17 @@
 #include "base/problem.hpp"
 #include "base/sealed_file.hpp"
 #include "train/data/regressions.hpp"
+#include "train/data/split.hpp"
 
 namespace swingbank::train::data {
 namespace {
 
 using Eigen::Index;
 constexpr std::size_t kRowsToFit = 8000;  ///< about fifteen times the number of fitted components
-constexpr std::size_t kRowsOfWidths = 5000;
 /// Distance between the 10 % and 90 % quantiles of a normal distribution, in standard deviations.
 constexpr float kMiddleInDeviations = 2.56f;
-constexpr float kStillRow = 1e-6f;  ///< added to a row's size, which is 0 for a constant row [pu]
-constexpr double kRank = 1e-9;      ///< relative variance up to which a component is rounding error
-constexpr std::size_t kRowsOfNoise = 5000;
+constexpr float kStillRow = 1e-6f;    ///< added to a row's size, which is 0 for a constant row [pu]
+constexpr double kRank = 1e-9;        ///< relative variance up to which a component is rounding error
 constexpr double kSmallLevel = 1e-4;  ///< noise level of the fit; the noise is proportional to its level
 constexpr float kWidestCoefficient = 4.0f;  ///< limit of a coefficient's deviation from its median, in widths
 /// Limit of a row's noise, as a multiple of the median: a low voltage near a fault amplifies the noise.
@@ -58,19 +57,16 @@ Whitening Whitening::fit(const ShardStream& stream, std::span<const std::uint64_
               0,
               s.shows_level ? 1u : 0u,
               s.regressions ? regression_count(s.outputs()) : 0};
-  const std::size_t every = std::max<std::size_t>(1, rows.size() / kRowsToFit);
-  std::vector<std::uint64_t> some;
-  for (std::size_t i = 0; i < rows.size(); i += every) some.push_back(rows[i]);
+  const std::vector<std::uint64_t> some = some_of(rows, kRowsToFit);
   Rows series(static_cast<Index>(some.size()), static_cast<Index>(s.values()));
   stream.read(some, series.data(), s.shows_level ? Noise{0.0} : stream.judged());
   w.fit_bases(series);
   w.fit_whole(w.components(series.data(), some.size()));
   if (s.regressions) w.fit_regressions(series, s.physics->bin_samples());
   if (!s.shows_level) return w;
-  some.resize(std::min(some.size(), kRowsOfNoise));
-  Rows noisy(static_cast<Index>(some.size()), series.cols());
+  Rows noisy(series.rows(), series.cols());
   stream.read(some, noisy.data(), Noise{kSmallLevel, 1});
-  w.fit_noise(series.topRows(noisy.rows()), noisy);
+  w.fit_noise(series, noisy);
   return w;
 }
 
@@ -112,8 +108,7 @@ Rows Whitening::whitened(const Rows& components) const {
 
 void Whitening::fit_regressions(const Rows& series, std::vector<float> weights) {
   weights_ = std::move(weights);
-  const std::size_t count = sizes_.regressed,
-                    rows = std::min(kRowsOfWidths, static_cast<std::size_t>(series.rows()));
+  const std::size_t count = sizes_.regressed, rows = static_cast<std::size_t>(series.rows());
   std::vector<float> all(rows * count), own(rows);
   for (std::size_t i = 0; i < rows; ++i)
     regress(series.row(static_cast<Index>(i)).data(), sizes_.channels, weights_, all.data() + i * count);

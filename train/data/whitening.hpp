@@ -21,8 +21,8 @@ struct WhiteningSizes {
 
 class Whitening {
  public:
-  /// Fits on `rows`, or on a sufficient number of evenly spaced ones. Throws InputError for no components or
-  /// for more components than samples.
+  /// Fits on `rows`, or on a sufficient number of them, drawn at random. Throws InputError for no components
+  /// or for more components than samples.
   static Whitening fit(const ShardStream& stream, std::span<const std::uint64_t> rows,
                        std::size_t components);
 

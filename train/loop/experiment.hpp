@@ -49,7 +49,7 @@ struct NetworkInput {
 /// Evaluation of a network.
 struct Judging {
   std::vector<double> noise;  ///< levels (sim/core/measurement_noise.hpp); 0: no noise
-  std::size_t test_rows = 0;  ///< approximate number of rows, evenly spaced; 0: all
+  std::size_t test_rows = 0;  ///< number of rows, drawn at random; 0: all
   std::vector<double> shares =
       {};  ///< fractions of the training rows; one more run each, at the first level and fold
 };

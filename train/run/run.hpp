@@ -26,7 +26,7 @@ struct RunRequest {
   std::uint64_t seed = 1;
   std::optional<std::size_t> epochs;     ///< overrides the preset's value
   double noise = 0;                      ///< noise level; must equal that of the stream
-  std::optional<std::size_t> test_rows;  ///< approximate number of rows, evenly spaced; none: all
+  std::optional<std::size_t> test_rows;  ///< number of rows, drawn at random; none: all
   double train_share = 1.0;              ///< fraction of the training rows that is used
   bool shuffle_labels = false;
   bool any_maker = false;    ///< accept results of other software or kernels

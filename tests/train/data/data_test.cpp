@@ -295,6 +295,19 @@ TEST(Split, RowsOfASecondDatasetOnlyTrain) {
   EXPECT_EQ(a, c);
 }
 
+TEST(Split, SomeRowsAreOfAllGenerators) {
+  std::vector<std::uint64_t> rows(1000);
+  std::iota(rows.begin(), rows.end(), std::uint64_t{0});
+  EXPECT_EQ(some_of(rows, 1000), rows);
+  const std::vector<std::uint64_t> some = some_of(rows, 100);
+  EXPECT_EQ(some.size(), 100u);
+  EXPECT_TRUE(std::ranges::is_sorted(some));
+  std::set<std::uint64_t> distinct(some.begin(), some.end()), generators;
+  EXPECT_EQ(distinct.size(), 100u);
+  for (const auto row : some) generators.insert(row % 10);  // ten generators, one row after the other
+  EXPECT_EQ(generators.size(), 10u);
+}
+
 TEST(Split, GeneratorsSetAsideCalibrateAndDoNotTrain) {
   test::Folder folder("aside"), other("aside-other");
   const mpi::store::Dataset dataset = test::make_dataset(folder.path), more = test::make_dataset(other.path);
@@ -305,7 +318,11 @@ TEST(Split, GeneratorsSetAsideCalibrateAndDoNotTrain) {
   ASSERT_EQ(split.set_aside.size(), 2u);
   EXPECT_EQ(split.test.size(), 40u);
   EXPECT_EQ(split.calibration.size(), 160u);
-  EXPECT_EQ(split.train.size() + split.validation.size(), 560u);
+  // Both datasets contain the same samples; those of validation rows are no training rows in either.
+  EXPECT_EQ(split.train.size(), 2 * (280u - split.validation.size()));
+  std::vector<std::uint64_t> kept = split.train;
+  leave_out(kept, labels, held_out(labels, split));
+  EXPECT_EQ(kept, split.train);
   const auto aside = [&](std::uint64_t row) {
     return std::ranges::find(split.set_aside, labels.generator[row]) != split.set_aside.end();
   };

@@ -118,7 +118,8 @@ TEST(Split, AcrossDatasetsTrainsOnOneAndJudgesTheOther) {
   labels.parameters = 1;
   labels.judged = 20;
   for (std::size_t i = 0; i < labels.rows; ++i) {
-    labels.values.push_back(static_cast<double>(i / 2));  // two rows per databank point
+    // two rows per databank point; the last ten rows have the points of the first ten, which are test rows
+    labels.values.push_back(static_cast<double>(i / 2 % 20));
     labels.sample_id.push_back(i);
     labels.generator.push_back(30);
   }
@@ -126,9 +127,12 @@ TEST(Split, AcrossDatasetsTrainsOnOneAndJudgesTheOther) {
   ASSERT_EQ(split.test.size(), 20u);
   EXPECT_EQ(split.test.front(), 0u);
   EXPECT_EQ(split.test.back(), 19u);
-  EXPECT_EQ(split.validation.size(), 6u);
-  EXPECT_EQ(split.train.size(), 24u);
-  for (const auto row : split.train) EXPECT_GE(row, 20u);
+  EXPECT_EQ(split.validation.size(), 4u);
+  EXPECT_EQ(split.train.size(), 16u);
+  for (const auto row : split.train) {
+    EXPECT_GE(row, 20u);
+    EXPECT_LT(row, 40u);
+  }
   for (std::size_t i = 0; i < split.validation.size(); i += 2)
     EXPECT_EQ(split.validation[i] / 2, split.validation[i + 1] / 2)
         << "the rows of a databank point must be in one part of the split";

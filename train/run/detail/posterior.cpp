@@ -17,14 +17,6 @@ constexpr std::uint64_t kPosteriorDraws = 1u << 20;  // first noise realisation 
 constexpr std::uint64_t kCalibrationDraw = 2;
 constexpr std::size_t kCalibrationRows = 3000, kOtherRows = 1000, kLevelsAboveZero = 5;
 
-/// Returns at most about `most` of the rows, evenly spaced.
-std::vector<std::uint64_t> some_of(const std::vector<std::uint64_t>& rows, std::size_t most) {
-  const std::size_t every = (rows.size() + most - 1) / most;
-  std::vector<std::uint64_t> some;
-  for (std::size_t i = 0; i < rows.size(); i += every) some.push_back(rows[i]);
-  return some;
-}
-
 std::vector<double> levels_of(const PreparedRun& run) {
   if (!run.recipe.noise_levels) return {run.stream.noise().level};
   const data::NoiseLevels& range = *run.recipe.noise_levels;
@@ -162,7 +154,7 @@ bool train_posterior(Trained& trained, const PreparedRun& run, loop::LoopSetting
   loop::LoopData data{run.stream, features, run.split.train, run.split.validation, targets};
   data.loss = [head](const at::Tensor& numbers, const at::Tensor& of) { return head->loss(numbers, of); };
   if (!loop::train_network(*posterior.head, data, settings, progress).finished) return false;
-  const auto rows = some_of(calibration_rows(run.split), kCalibrationRows);
+  const auto rows = data::some_of(calibration_rows(run.split), kCalibrationRows);
   for (const double level : levels_of(run)) posterior.levels.push_back(calibrate(trained, run, level, rows));
   return true;
 }
@@ -174,7 +166,7 @@ json judge_posterior(const PreparedRun& run, const Trained& trained) {
               {"calibration_rows", std::min(calibration_rows(run.split).size(), kCalibrationRows)},
               {"test", judged_on(trained, run, run.split.test, maps)},
               {"test_not_recalibrated", judged_on(trained, run, run.split.test, none)}};
-  const auto others = some_of(other_rows(run), kOtherRows);
+  const auto others = data::some_of(other_rows(run), kOtherRows);
   if (!others.empty()) all["other_operating_points"] = judged_on(trained, run, others, maps);
   return all;
 }

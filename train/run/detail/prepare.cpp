@@ -9,14 +9,6 @@
 namespace swingbank::train::run {
 namespace {
 
-/// Keeps about `wanted` rows, evenly spaced.
-void thin(std::vector<std::uint64_t>& rows, std::size_t wanted) {
-  const std::size_t every = std::max<std::size_t>(1, rows.size() / wanted);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < rows.size(); i += every) rows[kept++] = rows[i];
-  rows.resize(kept);
-}
-
 /// Throws InputError if a method needs complete records but the dataset is not on disk.
 void require_records(const data::ShardStream& stream, const RunRequest& r) {
   const loop::TrainingRecipe& recipe = r.experiment.training(r.preset, r.network);
@@ -36,7 +28,7 @@ data::RowSplit split_of(const data::Labels& labels, const RunRequest& r) {
                              ? data::split_across(labels, recipe.validation_share, r.seed)
                          : r.experiment.split == loop::Split::by_row ? data::split_by_row(labels, r.seed)
                                                                      : data::split_by_point(labels, r.seed);
-  if (r.test_rows) thin(split.test, *r.test_rows);
+  if (r.test_rows) split.test = data::some_of(split.test, *r.test_rows);
   if (r.train_share < 1) data::keep_share(split, labels, r.train_share);
   return split;
 }
@@ -70,9 +62,11 @@ std::vector<std::uint64_t> trainable(const data::Labels& labels, const PreparedR
         std::ranges::find(run.split.set_aside, of) == run.split.set_aside.end())
       rows.push_back(row);
   }
+  data::leave_out(rows, labels, data::held_out(run.stream.labels(), run.split));
   if (rows.empty())
     throw InputError({"no training rows in an epoch", "--fresh-rows",
-                      "every new event was rejected, or all generators are left out", "raise --draws"});
+                      "every new event was rejected, or belongs to a left-out generator or parameter set",
+                      "raise --draws"});
   return rows;
 }
 
