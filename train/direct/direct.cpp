@@ -8,6 +8,7 @@
 #include <map>
 
 #include "base/in_parallel.hpp"
+#include "base/stop_signal.hpp"
 #include "sim/core/frequency.hpp"
 #include "sim/direct/likelihood.hpp"
 #include "sim/direct/refine.hpp"
@@ -209,6 +210,7 @@ void for_each_row(const store::Dataset& d, std::span<const std::uint64_t> rows, 
           [](int) {});
       done = last;
       if (report) report(done);
+      if (stop_asked()) throw Interrupted{};
     }
   }
 }
@@ -233,6 +235,9 @@ std::vector<double> estimate(const store::Dataset& d, std::span<const std::uint6
 std::vector<double> estimate_from(const store::Dataset& d, std::span<const std::uint64_t> rows,
                                   std::span<const double> starts, const data::NoiseRecipe& noise,
                                   const std::function<void(std::size_t)>& report) {
+  if (noise.level == 0)
+    throw InputError({"a likelihood search without noise", "--noise",
+                      "the likelihood of a record needs its noise level", "give --noise above 0"});
   std::vector<double> out(starts.begin(), starts.end());
   for_each_row(d, rows, Rows(d, Method::from_start, noise), out, report);
   return out;

@@ -28,7 +28,7 @@ bool is_method(std::string_view name);
 /// sampling box except for "floor". Uses complete records at full rate, independent of the networks' input.
 /// `report`: called with the number of finished rows. Throws InputError if the machine has no closed form, a
 /// required channel is not recorded, parameters of other effects vary, or the floor is requested without
-/// noise.
+/// noise; Interrupted after a stop signal.
 std::vector<double> estimate(const mpi::store::Dataset& dataset, std::span<const std::uint64_t> rows,
                              std::string_view method, const data::NoiseRecipe& noise = {},
                              const std::function<void(std::size_t)>& report = {});

@@ -11,6 +11,7 @@
 #include "base/json.hpp"
 #include "base/problem.hpp"
 #include "base/run_lock.hpp"
+#include "base/stop_signal.hpp"
 #include "mpi/items/one_process.hpp"
 #include "train/data/random.hpp"
 #include "train/direct/direct.hpp"
@@ -32,16 +33,21 @@ std::string differing(const json& there, const json& here) {
   return fmt::format("{}", fmt::join(keys, ", "));
 }
 
+/// Returns the identity `there` with what may differ taken from `here`: the processor's kernels, and the
+/// software if `here` accepts any.
+json comparable(json there, const json& here) {
+  if (!there.is_object()) return there;
+  there["kernels"] = here["kernels"];
+  if (here["software"] == "any") there["software"] = "any";
+  return there;
+}
+
 /// Returns whether the result already exists. Throws InputError if it belongs to another run or other
 /// software. A result from another processor is accepted.
 bool already_done(const std::filesystem::path& file, const json& run) {
   if (!std::filesystem::exists(file)) return false;
   const json parsed = json::parse(read_text(file), nullptr, false);
-  json there = parsed.is_object() ? parsed.value("run", json()) : json();
-  if (there.is_object()) {
-    there["kernels"] = run["kernels"];
-    if (run["software"] == "any") there["software"] = "any";
-  }
+  const json there = comparable(parsed.is_object() ? parsed.value("run", json()) : json(), run);
   if (there == run) return true;
   throw InputError({"result of another run", file.string(),
                     fmt::format("it differs from this run's in: {}", differing(there, run)),
@@ -71,7 +77,8 @@ struct Guesses {
 Guesses guesses_for(const PreparedRun& run) {
   Guesses g;
   if (run.recipe.corrects.empty()) return g;
-  g.raw = guesses(run.stream, run.recipe.corrects, run.request.out, run.request.quiet);
+  g.raw =
+      guesses(run.stream, run.recipe.corrects, run.identity["software"], run.request.out, run.request.quiet);
   g.width = run.scale.unit.size();
   for (std::size_t i = 0; i < g.raw.size(); ++i) {
     const std::size_t p = i % g.width;
@@ -135,7 +142,8 @@ std::unique_ptr<Trained> network_of_start(const PreparedRun& run) {
   return SavedNetwork::load(network_file(r.out / (training_name(r) + ".json"))).release();
 }
 
-/// Runs a method without training. It writes no checkpoints, because it takes minutes at most.
+/// Runs a method without training. It writes no checkpoints, because it takes minutes at most; a stop signal
+/// ends it without a result.
 RunOutcome run_direct(const PreparedRun& run, const std::filesystem::path& result) {
   const RunRequest& r = run.request;
   const auto& rows = run.split.test;
@@ -288,7 +296,7 @@ class NetworkRun {
   bool load(Trained& trained) {
     if (!std::filesystem::exists(file())) return false;
     SavedNetwork saved = SavedNetwork::load(file());
-    if (saved.identity() != run_.training_identity) return false;
+    if (comparable(saved.identity(), run_.training_identity) != run_.training_identity) return false;
     trained = std::move(*saved.release());
     progress_.line(fmt::format("already trained: {}", file().string()));
     return true;
@@ -360,6 +368,15 @@ class NetworkRun {
   loop::TrainingProgress progress_;
 };
 
+RunOutcome train_and_judge(const PreparedRun& run, const mpi::items::Ranks& ranks,
+                           const std::filesystem::path& result) {
+  NetworkRun network(run, ranks);
+  const std::optional<Trained> trained = network.train();
+  if (!trained) return RunOutcome::stopped;
+  if (ranks.rank() == 0) network.judge_to(result, *trained);
+  return RunOutcome::done;
+}
+
 /// Locks the run; called on rank 0. Returns false if the result already exists.
 bool begin(const PreparedRun& run, const std::filesystem::path& result, std::optional<RunLock>& lock) {
   if (already_done(result, run.identity)) return false;
@@ -398,14 +415,12 @@ RunOutcome run(const data::ShardStream& stream, const RunRequest& r) {
     if (ranks.rank() == 0) needed = begin(*prepared, result, lock);
   });
   if (ranks.from_first(needed ? 1 : 0) == 0) return RunOutcome::already_done;
-  if (!is_trained(r)) return run_direct(*prepared, result);
-  NetworkRun network(*prepared, ranks);
-  const std::optional<Trained> trained = network.train();
-  if (!trained) return RunOutcome::stopped;
-  if (ranks.rank() != 0) return RunOutcome::done;
-  network.judge_to(result, *trained);
-  lock->withdraw(true);
-  return RunOutcome::done;
+  RunOutcome outcome = RunOutcome::stopped;
+  until_interrupted([&] {
+    outcome = is_trained(r) ? train_and_judge(*prepared, ranks, result) : run_direct(*prepared, result);
+  });
+  if (lock && outcome == RunOutcome::done) lock->withdraw(true);
+  return outcome;
 }
 
 }  // namespace swingbank::train::run

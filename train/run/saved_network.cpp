@@ -130,6 +130,7 @@ json header_of(const PreparedRun& run, const Trained& trained) {
            {{"epochs", trained.report.epochs},
             {"best_epoch", trained.report.best_epoch},
             {"seconds", trained.report.seconds},
+            {"processor_seconds", trained.report.processor_seconds},
             {"validation_mse", trained.report.validation},
             {"curve", loop::learning_curve_json(trained.report.curve)}}},
           {"physics", physics_json(s)},
@@ -297,7 +298,8 @@ data::FeatureSizes SavedNetwork::read_header(const json& h) {
   training.at("best_epoch").get_to(trained_->report.best_epoch);
   training.at("seconds").get_to(trained_->report.seconds);
   training.at("validation_mse").get_to(trained_->report.validation);
-  // Networks of earlier versions have no curve.
+  // Networks of earlier versions have neither processor time nor curve.
+  trained_->report.processor_seconds = training.value("processor_seconds", 0.0);
   if (training.contains("curve")) trained_->report.curve = loop::read_learning_curve(training["curve"]);
   for (const auto& p : h.at("parameters")) {
     scale_.mean.push_back(p.at("mean"));

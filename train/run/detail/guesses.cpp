@@ -53,17 +53,18 @@ std::vector<float> make(const data::ShardStream& stream, const std::string& meth
 }  // namespace
 
 std::vector<float> guesses(const data::ShardStream& stream, const std::string& method,
-                           const std::filesystem::path& folder, bool quiet) {
+                           const std::string& maker, const std::filesystem::path& folder, bool quiet) {
   const data::NoiseRecipe& noise = stream.noise();
   const json identity = {{"method", method},
+                         {"software", maker},
                          {"dataset", stream.dataset().hash},
                          {"training_dataset", stream.more() ? stream.more()->hash : ""},
                          {"noise", noise.level},
                          {"noise_seed", noise.level > 0 ? noise.seed : 0}};
   const std::string more = stream.more() ? stream.more()->hash : "none";
   const auto file =
-      folder / fmt::format("guesses-{}-{}-{}-noise{:g}-seed{}.bin", method, stream.dataset().hash, more,
-                           noise.level, noise.level > 0 ? noise.seed : 0);
+      folder / fmt::format("guesses-{}-{}-{}-noise{:g}-seed{}-{}.bin", method, stream.dataset().hash, more,
+                           noise.level, noise.level > 0 ? noise.seed : 0, maker.substr(maker.rfind(' ') + 1));
   const std::size_t size = stream.labels().rows * stream.labels().parameters;
   std::vector<float> values;
   if (read(file, identity, size, values)) return values;

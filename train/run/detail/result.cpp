@@ -85,13 +85,12 @@ json identity(const data::ShardStream& stream, const RunRequest& r) {
   if (p.recipe.regressions) all["regressions"] = true;
   if (!t.steps_from.empty()) all["steps_from"] = t.steps_from;
   if (r.fresh) all["fresh_rows"] = true;
-  if (r.experiment.split == loop::Split::by_row) all["split"] = "by-row";
+  if (r.experiment.split == loop::Split::by_row || r.experiment.split == loop::Split::across)
+    all["split"] = loop::kSplits.at(static_cast<std::size_t>(r.experiment.split));
   if (t.noise_levels)
     all["training_noise"] = {t.noise_levels->low, t.noise_levels->high, t.noise_levels->share_at_zero};
-  if (t.posterior_epochs > 0) {
-    all["posterior_epochs"] = t.posterior_epochs;
-    all["set_aside"] = t.set_aside;
-  }
+  if (t.posterior_epochs > 0) all["posterior_epochs"] = t.posterior_epochs;
+  if (t.posterior_epochs > 0 || t.set_aside > 0) all["set_aside"] = t.set_aside;
   return all;
 }
 
