@@ -59,6 +59,7 @@ if [[ ! $seed =~ ^[0-9]+$ || ! $seeds =~ ^[1-9][0-9]*$ ]]; then
   echo "no seeds at --seed $seed, --seeds $seeds (whole numbers, the second above 0): give for example 1 and 3" >&2
   exit 1
 fi
+seed=$((10#$seed)) seeds=$((10#$seeds)) # a leading zero is not octal
 if [[ ! $any_maker =~ ^[01]$ ]]; then
   echo "no switch at --any-maker $any_maker (it must be 0 or 1): give one of these" >&2
   exit 1
@@ -170,11 +171,11 @@ train() {
   if [[ -z $task ]]; then all=$(sed -E 's/^([^ ]+ [^ ]+) [0-9]+$/\1 all/' <<<"$all" | uniq); fi
   mapfile -t lines < <(of_all_seeds "$all")
   if [[ -n $task ]]; then
-    if [[ ! $task =~ ^[0-9]+$ ]] || ((task >= ${#lines[@]})); then
+    if [[ ! $task =~ ^[0-9]+$ ]] || ((10#$task >= ${#lines[@]})); then
       echo "no such task at --task $task (the experiment has ${#lines[@]}, counted from 0): give a lower number" >&2
       return 1
     fi
-    lines=("${lines[task]}")
+    lines=("${lines[10#$task]}")
   fi
   for line in "${lines[@]}"; do
     # shellcheck disable=SC2086 # words: seed, network, noise, fold, and the share of the training rows if less than all

@@ -72,7 +72,12 @@ follow_up() {
     flock 8
     if [[ -z ${SWINGBANK_EXCLUDED:-} ]] ||
       ! id=$(sbatch "${options[@]}" --exclude="$SWINGBANK_EXCLUDED" "$SWINGBANK_SOURCE/slurm/$stage.sbatch"); then
-      id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch") # without exclusion: no other node may exist
+      # without exclusion: no other node may exist
+      id=$(sbatch "${options[@]}" "$SWINGBANK_SOURCE/slurm/$stage.sbatch") || {
+        echo "no job continues $stage at slurm/job.bash (sbatch's message is above): submit the experiment again;" \
+          "finished parts are kept" >&2
+        exit 1
+      }
     fi
     id=${id%%;*}
     echo "$stage $id" >>"$log/jobs"

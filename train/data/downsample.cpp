@@ -104,6 +104,9 @@ InputSelection select_input(const InputRecipe& recipe, const mpi::store::Dataset
     s.channels.push_back(static_cast<std::size_t>(found - dataset.channel_names.begin()));
   }
   const double length = static_cast<double>(dataset.samples) / dataset.rate;
+  if (recipe.slice > 1 && (recipe.form == InputForm::physics || recipe.form == InputForm::swing))
+    problems.add(fmt::format("slice {}", recipe.slice), "slice",
+                 "the forms physics and swing read every sample", "set slice = 1");
   if (recipe.slice < 1)
     problems.add("slice 0", "slice", "a slice keeps every n-th sample, n at least 1",
                  "use 1 to keep all samples");

@@ -319,6 +319,9 @@ class Loop {
   }
   void judge_weights(double samples_per_s) {
     const double error = validation_error();
+    if (!std::isfinite(error))
+      throw InputError({"the validation loss is not a number", fmt::format("epoch {}", at_.epoch + 1),
+                        "the weights have diverged", "lower learning_rate in the experiment"});
     const bool better = error < at_.best;
     curve_.push_back({at_.epoch + 1, at_.loss_sum / at_.rows, error, rate_});
     progress_.line(fmt::format("epoch {} of {}: loss {:.4f}, validation {:.4f}{}{}, {}", at_.epoch + 1,

@@ -142,7 +142,7 @@ Coverage coverage(const Posteriors& posteriors, std::span<const Recalibration> r
       [&](std::size_t r) {
         rank[r] = tarp_rank(posteriors, recalibrations, r,
                             places.subspan(r * posteriors.parameters, posteriors.parameters),
-                            sim::seed_of(seed, r));
+                            sim::seed_of(~seed, r));  // not the random numbers of the noise of row r
       },
       [](int) {});
   for (const std::size_t r : rank) ++c.tarp.count[r * kRankBins / (kRankDraws + 1)];
