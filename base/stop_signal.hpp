@@ -21,8 +21,8 @@ inline void say_stopping() {
     const auto written = ::write(STDERR_FILENO, text, sizeof text - 1);
 }
 }  // namespace detail
-/// Installs handlers that record stop signals, so that the program can finish the current work. A second
-/// SIGINT ends the process.
+/// Installs handlers that record stop signals, so that the program can finish the current work. A
+/// SIGINT after an earlier request to stop ends the process at once.
 inline void catch_stop_signals() {
   detail::interruptible = 0;
   detail::first_rank = is_first_rank() ? 1 : 0;

@@ -26,9 +26,10 @@ bool is_method(std::string_view name);
 
 /// Returns estimates for rows of the dataset in ascending order: rows x parameters [raw units], inside the
 /// sampling box except for "floor". Uses complete records at full rate, independent of the networks' input.
-/// `report`: called with the number of finished rows. Throws InputError if the machine has no closed form, a
-/// required channel is not recorded, parameters of other effects vary, or the floor is requested without
-/// noise; Interrupted after a stop signal.
+/// `report`: called with the number of finished rows. Throws InputError if the machine has no closed form
+/// (closed-form, refined) or no likelihood (all methods except closed-form), a required channel is not
+/// recorded, parameters of other effects vary, or the floor is requested without noise; Interrupted after a
+/// stop signal.
 std::vector<double> estimate(const mpi::store::Dataset& dataset, std::span<const std::uint64_t> rows,
                              std::string_view method, const data::NoiseRecipe& noise = {},
                              const std::function<void(std::size_t)>& report = {});

@@ -39,7 +39,7 @@ class Network {
  public:
   virtual ~Network() = default;
   /// Returns batch x outputs from x, batch x channels x samples. `training` enables dropout; null:
-  /// evaluation.
+  /// evaluation. In training, a network with its own loss() may append columns for it.
   virtual at::Tensor forward(const at::Tensor& x, const StepRows* training) = 0;
   /// Returns auxiliary features of rows, batch x numbers, for a network that is built on this one. The last
   /// numbers are the outputs. Undefined tensor: the network has no auxiliary features.

@@ -34,9 +34,10 @@ struct RunRequest {
   std::filesystem::path out;
   runtime::Runtime runtime;
   bool quiet = false;
-  bool watch = false;                        ///< draw the learning curve on the terminal
-  std::chrono::milliseconds patience{5000};  ///< waiting time if another process works on this run
-  std::function<bool()> stop = {};           ///< polled before each batch; empty: stop_asked()
+  bool watch = false;  ///< draw the learning curve on the terminal
+  std::chrono::milliseconds patience{
+      5000};                        ///< waiting time for a process of this run; 12 h with noise levels
+  std::function<bool()> stop = {};  ///< polled before each batch; empty: stop_asked()
   const mpi::items::Ranks* ranks = nullptr;  ///< ranks that train together; null: this process alone
   /// Returns the stream of new events for an epoch, from 1; null if a signal asks to stop. Empty: every epoch
   /// reads the same training rows.
@@ -49,7 +50,8 @@ enum class RunOutcome { done, already_done, stopped };
 
 /// Trains, scores and writes the JSON of train/run/README.md. Continues from a checkpoint of the same run.
 /// Throws InputError if the existing result or checkpoint belongs to another run or other software, or if
-/// another process works on this run (RunLock). A checkpoint must also have the same kernels.
+/// another process still works on this run after the waiting time (RunLock). A checkpoint must also have the
+/// same kernels.
 /// Collective over the ranks, which have the same request and dataset; only rank 0 scores and writes files.
 RunOutcome run(const data::ShardStream& stream, const RunRequest& request);
 

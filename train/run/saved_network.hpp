@@ -47,7 +47,9 @@ struct Interval {
 struct Estimate {
   std::vector<double> values;                      ///< one per parameter [unit of the parameter]
   std::vector<std::optional<Interval>> intervals;  ///< none: constant parameter, or no posterior
-  double input_rms = 0.0;  ///< RMS of the normalised input; about 1 if the record is like the training rows
+  /// RMS of the input. About 1 if the record is like the training rows; the input of `swing` is not
+  /// normalised.
+  double input_rms = 0.0;
 };
 
 struct PreparedRun;
@@ -73,8 +75,8 @@ class SavedNetwork {
   /// Returns the training's result and gives up ownership; estimates are no longer possible.
   [[nodiscard]] std::unique_ptr<Trained> release();
   /// Returns the estimate from a record: info().channels x info().samples, at info().rate from t = 0, in the
-  /// units of a dataset's record. `noise`: noise level of the record, used only if the network was trained at
-  /// many levels. `reactance`: X'd of the machine [pu on the machine base], used only if
+  /// units of a dataset's record. `noise`: noise level of the record, used only if
+  /// info().noise_as_input. `reactance`: X'd of the machine [pu on the machine base], used only if
   /// info().needs_reactance.
   [[nodiscard]] Estimate estimate(std::span<const float> record, double noise = 0.0,
                                   double reactance = 0.0) const;
