@@ -113,6 +113,7 @@ Source::Source(const std::filesystem::path& named) : path(named) {
 }
 
 bool Source::is_named(const std::string& record) const {
+  if (files.size() > 1) return record == name || record == path.string();
   return record == before_terminal(path).filename().string() || record == path.filename().string();
 }
 

@@ -157,6 +157,32 @@ TEST_F(PlaybackTest, PowerWorldSignals) {
   EXPECT_NEAR(r.f[5], 1e-4, 1e-9);
 }
 
+class JoinTest : public Files {
+ protected:
+  /// Joins voltages from 12:00:00 with powers that begin `later` seconds afterwards; P = 80 MW + t of its
+  /// file.
+  Record joined(const std::string& clock, double later) {
+    const auto voltage = table(clock + ",V_kV,f_hz\n", 121, [](int k) {
+      return fmt::format("2026-03-13 12:00:{:09.6f},140.76,60", k / 60.0);
+    });
+    const auto power = table(clock + ",P_MW,Q_Mvar\n", 121, [&](int k) {
+      return fmt::format("2026-03-13 12:00:{:09.6f},{:.6f},20", later + k / 60.0, 80 + k / 60.0);
+    });
+    return read_record(write("v.csv", voltage).string() + "+" + write("pq.csv", power).string(), kTestBase);
+  }
+};
+TEST_F(JoinTest, FilesAreAlignedByTheirClocks) {
+  const Record r = joined("Time UTC", 0.5);
+  EXPECT_EQ(r.samples(), 91);  // t = 0 is 12:00:00.5, where the powers begin
+  EXPECT_NEAR(r.t.back(), 1.5, 1e-6);
+  EXPECT_NEAR(r.P.front(), 80.0 / kTestBase.mva, 1e-9);
+}
+TEST_F(JoinTest, UnknownZonesAreRefused) {
+  EXPECT_THAT(test::messages([&] { joined("Time", 0.5); }),
+              ElementsAre(AllOf(HasSubstr("files that begin at different times"), HasSubstr("UTC"))));
+  EXPECT_EQ(joined("Time", 0).samples(), 121);
+}
+
 // ---- angle from the frequency
 
 TEST(FrequencyTest, ReplacesTheMissingAngle) {

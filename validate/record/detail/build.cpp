@@ -290,8 +290,25 @@ void settle_angle(Record& r, const ReadOptions& options) {
         "An exciter alone needs no angle, and Efd is recorded: test it with --component exciter.");
 }
 
+/// Refers the times of `from` to t = 0 of `all`, if both files state when they begin. Adds a problem if they
+/// state different clock times of unknown time zones.
+void align_clocks(Record& from, Record& all, const std::string& files, Problems& problems) {
+  if (all.start.empty() || from.start.empty() || all.start == from.start) return;
+  if (all.epoch && from.epoch) {
+    const double later = *from.epoch - *all.epoch;
+    for (double& t : from.t) t += later;
+    from.epoch = all.epoch;
+    return;
+  }
+  problems.add("files that begin at different times", files,
+               fmt::format("t = 0 is {} in one file and {} in another, and their time zones are not known",
+                           all.start, from.start),
+               "name the time columns UTC, or give times in seconds from one zero");
+}
+
 /// Copies the channels of `from` to the record `all`, with linear interpolation if their times differ.
 void take_over(Record& from, Record& all, const std::string& files, Problems& problems) {
+  align_clocks(from, all, files, problems);
   const double slack = 1e-3 * all.step();
   const double first = std::max(all.t.front(), from.t.front()), last = std::min(all.t.back(), from.t.back());
   if (!(last - first > all.step() * kMinSamples)) {
