@@ -96,6 +96,44 @@ TEST(RecordComtradeTest, PhasesInOtherSpellings) {
   for (std::size_t c = 0; c < 6; ++c) w.channels[c].phase = "", w.channels[c].id = names[c];
   EXPECT_LT(largest_error(w.read(), {}), 1e-5);
 }
+TEST(RecordComtradeTest, SynchronisingVoltageIsNoPhase) {
+  for (const char* phase : {"", "S"}) {
+    Writer w = waveforms({});
+    const char* const names[] = {"VA", "IA", "VB", "IB", "VC", "IC"};
+    for (std::size_t c = 0; c < 6; ++c) w.channels[c].id = names[c];
+    Channel other = w.channels[0];
+    other.id = "VS";
+    other.phase = phase;
+    other.value = [](double) { return 0.0; };
+    w.channels.push_back(other);
+    EXPECT_LT(largest_error(w.read(), {}), 1e-5);
+  }
+}
+TEST(RecordComtradeTest, UnitsInWords) {
+  Writer w = waveforms({});
+  for (auto& c : w.channels) c.unit = c.unit == "kV" ? "kVolts" : "Amps";
+  EXPECT_LT(largest_error(w.read(), {}), 1e-5);
+}
+TEST(RecordComtradeTest, PrimaryValuesNeedNoRatio) {
+  Writer w = waveforms({});
+  w.edit = [](std::vector<std::string>& cfg) {
+    for (std::size_t line = 2; line < 8; ++line) {
+      const auto ratio = cfg[line].find(",1,1,P");
+      ASSERT_NE(ratio, std::string::npos) << cfg[line];
+      cfg[line].replace(ratio, 6, ",,,P");
+    }
+  };
+  EXPECT_LT(largest_error(w.read(), {}), 1e-5);
+}
+TEST(RecordComtradeTest, StampsOfEarlierRevisionsAreMicroseconds) {
+  Writer w = waveforms({});
+  w.revision = 1999;
+  w.edit = [](std::vector<std::string>& cfg) {
+    for (auto& line : cfg)
+      if (line.starts_with("01/05/2024")) line += "000";  // nine decimals
+  };
+  EXPECT_LT(largest_error(w.read(), {}), 1e-5);
+}
 TEST(RecordComtradeTest, OneCircuitOfSeveral) {
   Writer w = waveforms({});
   for (int p = 0; p < 3; ++p) {

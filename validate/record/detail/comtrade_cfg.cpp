@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/capitals.hpp"
+#include "base/encoding.hpp"
 #include "validate/record/detail/text.hpp"
 
 namespace swingbank::validate::record {
@@ -145,9 +146,10 @@ class Config {
       c_.about.channels.push_back(std::move(c));
       return;
     }
-    c.primary = number(f, 10, "primary ratio");
-    c.secondary = number(f, 11, "secondary ratio");
     const std::string side = capitals(f[12]);
+    // Values on the primary side need no ratio.
+    if (side != "P" || !f[10].empty()) c.primary = number(f, 10, "primary ratio");
+    if (side != "P" || !f[11].empty()) c.secondary = number(f, 11, "secondary ratio");
     c.secondary_values = side == "S";
     if (side != "P" && side != "S")
       fault(fmt::format("side '{}'", f[12]), "it must be P (primary) or S (secondary)",
@@ -207,7 +209,8 @@ class Config {
           fmt::format("Data type {} exists since revision 2013, but the configuration states revision {}.", k,
                       c_.about.revision));
     const double multiplier = time_multiplier();
-    c_.stamp = (digits > 6 ? 1e-9 : 1e-6) * multiplier;
+    // Stamps in ns exist since revision 2013.
+    c_.stamp = (digits > 6 && c_.about.revision >= 2013 ? 1e-9 : 1e-6) * multiplier;
     if (!(multiplier > 0))
       fault("an invalid time multiplier", "it must be positive", "export the configuration again");
   }

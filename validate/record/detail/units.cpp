@@ -29,7 +29,7 @@ constexpr struct {
     {Unit::day, "d day days tage jours dias giorni"},
     {Unit::cycle, "cycle cycles cyc cycl perioden"},
     {Unit::pu, "pu perunit"},
-    {Unit::kilovolt, "kv kilovolt kilovolts"},
+    {Unit::kilovolt, "kv kvolt kvolts kilovolt kilovolts"},
     {Unit::volt, "v volt volts"},
     {Unit::radian, "rad radian radians"},
     {Unit::degree, "deg degs degree degrees grad °"},
@@ -43,7 +43,7 @@ constexpr struct {
     {Unit::megavar, "mvar mvars megavar megavars"},
     {Unit::kilovar, "kvar kvars kilovar kilovars"},
     {Unit::var, "var vars"},
-    {Unit::kiloampere, "ka kiloamp kiloamps kiloampere kiloamperes"},
+    {Unit::kiloampere, "ka kamp kamps kiloamp kiloamps kiloampere kiloamperes"},
     {Unit::ampere, "a amp amps ampere amperes"},
 };
 /// Ignored qualifiers after a unit, then qualifiers after a voltage unit that state line to line or line to

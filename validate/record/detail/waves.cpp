@@ -107,11 +107,23 @@ std::optional<Named> named_in(std::string_view id, bool voltage, const std::opti
 struct Found {
   std::vector<const Wave*> phases[3], pairs[3];
 };
+/// Returns whether the phase has the letter A, B or C.
+bool is_abc(const Wave* w) {
+  const std::string phase = normalised(w->channel->phase), id = normalised(w->channel->id);
+  const char letter = !phase.empty() ? phase[0] : id.size() > 1 ? id[1] : ' ';
+  return letter >= 'a' && letter <= 'c';
+}
 Found found_in(const std::vector<Wave>& waves, bool voltage, const std::string* circuit) {
   Found found;
   for (const Wave& w : waves)
     if (w.voltage == voltage && (!circuit || w.circuit == *circuit))
       (w.phase.between ? found.pairs : found.phases)[w.phase.number].push_back(&w);
+  // Relays name a synchronising voltage VS beside VA, VB, VC: where phases have the letters A, B, C, S is
+  // none.
+  for (auto& of : found.phases)
+    if (const auto abc = std::ranges::find_if(of, is_abc);
+        abc != of.end() && std::ranges::count_if(of, is_abc) == 1)
+      std::erase_if(of, [kept = *abc](const Wave* w) { return w != kept && w->circuit == kept->circuit; });
   return found;
 }
 
@@ -144,15 +156,16 @@ std::string seen(const std::vector<Wave>& waves, bool voltage) {
 }  // namespace
 
 std::optional<Wave> wave_of(const ComtradeChannel& c) {
-  const std::string unit = normalised(c.unit);
-  const bool volt = unit == "v" || unit == "kv", ampere = unit == "a" || unit == "ka";
-  if (!volt && !ampere) return std::nullopt;
+  const auto unit = find_unit(c.unit);
+  const bool volt = unit == Unit::volt || unit == Unit::kilovolt,
+             kilo = unit == Unit::kilovolt || unit == Unit::kiloampere;
+  if (!volt && unit != Unit::ampere && unit != Unit::kiloampere) return std::nullopt;
   auto phase = phase_of(c.phase);
   const auto named = named_in(c.id, volt, phase);
   if (!phase && named) phase = named->phase;
-  if (!phase || (ampere && phase->between)) return std::nullopt;
+  if (!phase || (!volt && phase->between)) return std::nullopt;
   return Wave{&c, volt, *phase, c.component.empty() && named ? named->circuit : c.component,
-              unit[0] == 'k' ? 1.0 : 1e-3};
+              kilo ? 1.0 : 1e-3};
 }
 
 std::optional<WaveSet> choose_waves(const std::vector<Wave>& waves, bool voltage, const ReadOptions& options,
