@@ -99,12 +99,9 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
   for (std::size_t c = 0; c < channels.size(); ++c)
     headings.push_back({channels[c], column_meaning(channels[c], c < units.size() ? units[c] : "")});
   Problems problems;
-  const auto chosen = choose_columns(headings,
-                                     {.columns = options.columns,
-                                      .part = options.part,
-                                      .component = options.component,
-                                      .needed = options.needed},
-                                     base, file.string(), raw.about, problems);
+  ReadOptions of_columns = options;
+  of_columns.terminal.clear();  // it is the plant chosen above
+  const auto chosen = choose_columns(headings, of_columns, base, file.string(), raw.about, problems);
   raw.about.terminal = plants[plant];
   problems.raise();
   for (const auto i : chosen) {
@@ -124,7 +121,9 @@ Record read_hdf5_record(const std::filesystem::path& file, const RecordBase& bas
   for (const auto& c : raw.columns)
     for (std::size_t k = 0; k < n; ++k)
       if (!std::isfinite(c.values[k]))
-        faults.add(c.name, c.name, k, "the value is not finite", "simulate it again");
+        c.meaning.quantity == Quantity::time
+            ? faults.add(c.name, c.name, k, "the value is not finite", "simulate it again")
+            : faults.lose(c.name, c.name, k, "the value is missing", "simulate it with shorter gaps");
   return build_record(std::move(raw), base, options, std::move(faults), std::move(problems), file.string());
 }
 

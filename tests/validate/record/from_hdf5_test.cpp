@@ -29,7 +29,8 @@ class RecordHdf5Test : public ::testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// Two plants with delta, P, Q, V, theta; value = plant + channel / 10 + time / 100.
-  void write(const std::string& format, hsize_t channels = 5) {
+  /// The given number of samples of P of the second plant, from the twentieth on, are NaN.
+  void write(const std::string& format, hsize_t channels = 5, std::size_t missing = 0) {
     const std::lock_guard guard(mpi::store::h5::lock());
     mpi::store::h5::File h = mpi::store::h5::File::create(file_);
     std::vector<double> time, values;
@@ -37,6 +38,7 @@ class RecordHdf5Test : public ::testing::Test {
     for (int plant = 0; plant < 2; ++plant)
       for (int c = 0; c < static_cast<int>(channels); ++c)
         for (const double t : time) values.push_back(plant + c / 10.0 + t / 100);
+    for (std::size_t k = 0; k < missing; ++k) values[(channels + 1) * time.size() + 20 + k] = std::nan("");
     h.create<double>("/time", {50});
     h.write("/time", 0, 50, time.data());
     h.create<double>("/records", {2, channels, 50});
@@ -68,6 +70,13 @@ TEST_F(RecordHdf5Test, OnePlantOnTheRecordsBase) {
   EXPECT_EQ(r.terminal, "GENROU 7");
   EXPECT_EQ(r.name, "run.h5#GENROU 7");
   EXPECT_THAT(r.ignored, ElementsAre("delta"));
+}
+TEST_F(RecordHdf5Test, MissingSamplesAreBridged) {
+  write("swingbank-run-1", 5, 1);
+  const Record r = read_record(file_.string() + "#GENROU 7", {150, 60, 0});
+  ASSERT_EQ(r.samples(), 50);
+  EXPECT_EQ(std::ranges::count(r.lost, 1), 1);
+  EXPECT_TRUE(std::isfinite(r.P[20]));
 }
 TEST_F(RecordHdf5Test, SeveralPlantsOrNoSuchPlant) {
   write("swingbank-run-1");
