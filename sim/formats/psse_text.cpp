@@ -8,6 +8,7 @@
 #include <cstring>
 #include <sstream>
 
+#include "base/encoding.hpp"
 #include "base/input_file.hpp"
 
 namespace swingbank::sim::formats::psse {
@@ -39,7 +40,9 @@ bool quoted_field(const std::string& line, std::size_t& i, Field& field) {
 }  // namespace
 
 std::vector<std::string> read_lines(const std::filesystem::path& file) {
-  return lines_of(read_input(file, "cannot read the file", "check the path"));
+  // Only names of buses and equipment may contain other characters than ASCII, so no note is needed.
+  std::vector<std::string> notes;
+  return lines_of(as_utf8(read_input(file, "cannot read the file", "check the path"), notes));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "base/encoding.hpp"
 #include "base/sha256.hpp"
 #include "validate/record/detail/build.hpp"
 #include "validate/record/detail/cells.hpp"
@@ -19,10 +20,15 @@
 namespace swingbank::validate::record {
 namespace {
 
+/// Exception of a reader that read dates with the month first, and found one for which this is impossible.
+struct DayFirst {};
+
 class CsvReader {
  public:
-  CsvReader(std::string_view text, std::string name, const RecordBase& base, const ReadOptions& options)
-      : text_(text),
+  CsvReader(std::string_view text, std::string name, const RecordBase& base, const ReadOptions& options,
+            bool day_first = false)
+      : day_first_(day_first),
+        text_(text),
         ends_with_line_(text.ends_with('\n') || text.ends_with('\r')),
         name_(std::move(name)),
         base_(base),
@@ -289,7 +295,8 @@ class CsvReader {
 
   double stamp(const RawColumn& column, std::string_view cell, std::size_t sample, RawRecord& raw,
                SampleFaults& faults) {
-    const auto s = parse_stamp(cell);
+    const auto s = parse_stamp(cell, day_first_);
+    if (s && s->day_first && !day_first_) throw DayFirst{};
     if (!s) {
       faults.add(column.name, fmt::format("{} = '{}'", column.name, cell), sample,
                  "it is not a time stamp, unlike the rows before",
@@ -388,6 +395,7 @@ class CsvReader {
     for (std::size_t k = 0; k < t.size() && k < fractions_.size(); ++k) t[k] += scale * fractions_[k];
   }
 
+  bool day_first_;  ///< order of dates that have two
   std::string_view text_;
   bool ends_with_line_;
   std::string name_;
@@ -413,6 +421,16 @@ class CsvReader {
   int number_ = 0;
 };
 
+/// Reads a table. One date can show the order of day and month in all dates of the file.
+Record read_csv(std::string_view text, const std::string& name, const RecordBase& base,
+                const ReadOptions& options) {
+  try {
+    return CsvReader(text, name, base, options).read();
+  } catch (const DayFirst&) {
+    return CsvReader(text, name, base, options, true).read();
+  }
+}
+
 }  // namespace
 
 Record parse_record(std::string_view text, const std::string& name, const RecordBase& base,
@@ -422,7 +440,7 @@ Record parse_record(std::string_view text, const std::string& name, const Record
   const std::string known = as_utf8(text, notes);
   const bool playback = is_powerworld(known) || is_plb(name);
   Record record =
-      playback ? playback_record(known, name, base, options) : CsvReader(known, name, base, options).read();
+      playback ? playback_record(known, name, base, options) : read_csv(known, name, base, options);
   record.notes.insert(record.notes.begin(), notes.begin(), notes.end());
   record.sha256 = sha256(text);
   return record;

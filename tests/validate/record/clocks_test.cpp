@@ -161,6 +161,18 @@ TEST(ClockTest, ReportsStoppedClock) {
   EXPECT_EQ(std::ranges::count(few.lost, 1), 2);
 }
 
+TEST(ClockTest, OneDateShowsTheOrderOfDayAndMonth) {
+  // from 12 to 13 May: read alone, the first dates would be in December
+  const auto midnight = [](double t) {
+    return t < 1 ? fmt::format("12/05/2026 23:59:{:06.3f}", 59 + t)
+                 : fmt::format("13/05/2026 00:00:{:06.3f}", t - 1);
+  };
+  const Record r = parse_record(record_text("Time UTC", midnight), "r.csv", kTestBase);
+  expect_thirty_per_second(r);
+  ASSERT_TRUE(r.epoch.has_value());
+  EXPECT_EQ(utc_text(*r.epoch).substr(0, 10), "2026-05-12");
+}
+
 struct Written {
   const char *text, *month_day;  ///< at 12:56:20.017 of this day of 2026
 };

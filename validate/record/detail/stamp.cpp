@@ -80,7 +80,7 @@ bool day_of(long year, long month, long day, long& days) {
 
 class Reader {
  public:
-  explicit Reader(std::string_view text) : rest_(text) {}
+  Reader(std::string_view text, bool day_first) : rest_(text), day_first_(day_first) {}
 
   std::optional<Stamp> read() {
     const bool timed = time_alone();
@@ -158,9 +158,13 @@ class Reader {
       ok = day_of(value(0), value(1), value(2), stamp_.day);
     else if (numbers.size() == 3 && numbers[1].before == '.')
       ok = day_of(value(2), value(1), value(0), stamp_.day);
-    else if (numbers.size() == 3 && numbers[0].text.size() <= 2)
-      ok = day_of(value(2), value(0), value(1), stamp_.day) ||
-           day_of(value(2), value(1), value(0), stamp_.day);
+    else if (numbers.size() == 3 && numbers[0].text.size() <= 2) {
+      const auto read = [&](bool day_first) {
+        stamp_.day_first = day_first;
+        return day_of(value(2), value(day_first ? 1 : 0), value(day_first ? 0 : 1), stamp_.day);
+      };
+      ok = read(day_first_) || read(!day_first_);
+    }
     return ok && divide();
   }
 
@@ -265,19 +269,20 @@ class Reader {
   }
 
   std::string_view rest_;
+  bool day_first_;
   Stamp stamp_;
 };
 
 }  // namespace
 
-std::optional<Stamp> parse_stamp(std::string_view text) {
+std::optional<Stamp> parse_stamp(std::string_view text, bool day_first) {
   // Plain numbers are not stamps, except fourteen digits: year to second.
   const auto other = text.find_first_not_of("0123456789.+-eE");
   if (other == std::string_view::npos) {
     const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
     if (digits != 14) return std::nullopt;
   }
-  return Reader(text).read();
+  return Reader(text, day_first).read();
 }
 
 }  // namespace swingbank::validate::record
