@@ -176,7 +176,10 @@ void EpcReader::transformer(const Row& row) {
   if (tertiary > 0) itself.buses.push_back(tertiary);
   const auto circuit = identities_.id(itself, identity + " circuit", id_of(of, 6), "", of);
   if (!circuit) return;
-  if (table > 0)
+  if (table > 0 && units_only_)
+    problems_.add("zt = " + std::to_string(table), of.where(), "impedance corrections of a .epc are not read",
+                  "enter the impedance at the present tap, and set zt to 0");
+  else if (table > 0)
     network_.remark("impedance corrections of transformers are ignored",
                     ends_text(from, to) + ", table " + std::to_string(table) + " (" + of.where() + ")");
   if (f.integer(kOhms, "ohm", 0) != 0)

@@ -176,7 +176,12 @@ void EpcReader::generator(const Row& row) {
   if (g.bus < 0) return;
   const std::string where = "'" + g.id + "' at bus " + std::to_string(number) + " (" + f.where() + ")";
   check_machine(g, {"mbase", "sbase", "rtran", "xtran"}, where, f);
-  if (g.in_service && (g.rt != 0.0 || g.xt != 0.0) && tap != 1.0)
+  const bool step_up = g.rt != 0.0 || g.xt != 0.0;
+  if (units_only_ && g.in_service && step_up && tap != 1.0)
+    problems_.add("gtap = " + shortest(tap), f.where(),
+                  "a step-up transformer inside the generator record is modelled at its nominal ratio",
+                  "enter it as a transformer between two buses");
+  else if (g.in_service && step_up && tap != 1.0)
     network_.remark("step-up transformers inside a generator's record are modelled at nominal ratio",
                     where + ": gtap = " + shortest(tap));
   int regulated_bus = g.bus;

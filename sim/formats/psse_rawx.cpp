@@ -141,6 +141,27 @@ void RawReader::read_json() {
   json_transformers(net);
   rows("swshunt", kSwitched, &RawReader::switched_shunt);
   json_devices(net);
+  json_substations(net);
+}
+
+/// Reads the substations: the rows of the last three tables refer to a row of the first by isub.
+void RawReader::json_substations(const nlohmann::json& net) {
+  std::map<int, Substation> all;
+  const auto rows = [&](const char* name, const Names& names,
+                        const std::function<void(Substation&, const Record&)>& row) {
+    Table table(net, name, file_, problems_);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const Record key = table.record(i, {"isub"});
+      row(all[Fields(key, file_, problems_).integer(0, "isub")], table.record(i, names));
+    }
+  };
+  rows("sub", {"name"},
+       [&](Substation& s, const Record& r) { s.name = Fields(r, file_, problems_).text(0, ""); });
+  rows("subnode", {"inode", "name", "ibus", "stat"}, [&](Substation& s, const Record& r) { node(s, r); });
+  rows("subswd", {"inode", "jnode", "swdid", "name", "type", "stat"},
+       [&](Substation& s, const Record& r) { node_switch(s, r); });
+  rows("subterm", {"ibus", "inode"}, [&](Substation& s, const Record& r) { terminal(s, r); });
+  for (const auto& [number, station] : all) check_substation(station);
 }
 
 void RawReader::json_transformers(const nlohmann::json& net) {
@@ -157,9 +178,12 @@ void RawReader::json_transformers(const nlohmann::json& net) {
   for (std::size_t i = 0; i < corrections.size(); ++i) {  // a row is one point
     const Record point = corrections.record(i, {"itable", "tap", "refact", "imfact"});
     Fields f(point, file_, problems_);
-    tables_[f.integer(0, "itable")].emplace_back(static_cast<double>(f.number(1, "tap", 0.0L)),
-                                                 Complex(static_cast<double>(f.number(2, "refact", 0.0L)),
-                                                         static_cast<double>(f.number(3, "imfact", 0.0L))));
+    const int number = f.integer(0, "itable");
+    const auto tap = static_cast<double>(f.number(1, "tap", 0.0L));
+    auto& points = tables_[number];
+    if (!points.empty() && tap < points.back().first) unsorted(number, f);
+    points.emplace_back(tap, Complex(static_cast<double>(f.number(2, "refact", 0.0L)),
+                                     static_cast<double>(f.number(3, "imfact", 0.0L))));
   }
 }
 

@@ -230,8 +230,12 @@ void RawReader::correction_table(const Record& first) {
     record = std::move(*more);
   }
   if (!std::ranges::is_sorted(points, {}, [](const auto& p) { return p.first; }))
-    problems_.add("unsorted correction table " + std::to_string(head.integer(0, "table number", 0)),
-                  head.where(), "the T of its points must ascend", "sort the points by T");
+    unsorted(head.integer(0, "table number", 0), head);
+}
+
+void RawReader::unsorted(int table, const Fields& f) {
+  problems_.add("unsorted correction table " + std::to_string(table), f.where(),
+                "the T of its points must ascend", "sort the points by T");
 }
 
 /// Corrects impedances at the present tap or angle. T is a ratio if all points are between 0.5 and 1.5, else
@@ -243,7 +247,7 @@ void RawReader::correct_impedances() {
       if (options_.drop_refused)
         network_.remark("missing impedance correction tables are ignored (--drop-refused)",
                         c.name + " = " + std::to_string(c.table) + " (" + c.where + ")");
-      else if (!units_only_)
+      else
         problems_.add(c.name + " = " + std::to_string(c.table), c.where, "there is no such correction table",
                       "add the table, set TAB to 0, or ignore it with --drop-refused");
       continue;

@@ -124,6 +124,7 @@ network::Network RawReader::read() {
 RawSurvey RawReader::survey() {
   units_only_ = true;
   read_sections();
+  correct_impedances();
   return take_survey();
 }
 

@@ -62,6 +62,7 @@ class RawReader : NetworkReader {
   void read_json();
   void json_transformers(const nlohmann::json& network);
   void json_devices(const nlohmann::json& network);
+  void json_substations(const nlohmann::json& network);
 
   void header();
   void check_header(const Fields& header, int change, double frequency);
@@ -93,6 +94,7 @@ class RawReader : NetworkReader {
   void switched_shunt(const Record& record);
   void switching(Fields& f, const network::Shunt& shunt);
   void correction_table(const Record& first);
+  void unsorted(int table, const Fields& fields);
   void two_terminal_dc(const Record& first);
   std::vector<double> scheduled(Fields& line) const;
   void vsc_dc(const Record& first);
@@ -126,8 +128,20 @@ class RawReader : NetworkReader {
   Complex magnetising(Fields& head, Fields& winding, const Codes& codes, long double mva,
                       const network::Bus& bus);
 
-  struct Substation;
+  struct Substation {
+    struct Node {
+      int bus, root;  ///< root: parent in the union-find forest, initially the node itself
+    };
+    std::string name;
+    std::map<int, Node> nodes;
+    std::map<int, std::string> terminals;  ///< node with equipment -> place of its row in messages
+    int root(int node) const;
+  };
   bool part_of_substation(const char* name, const std::function<void(const Record&)>& row);
+  bool has_node(const Substation& station, int node, const Fields& fields);
+  void node(Substation& station, const Record& record);
+  void node_switch(Substation& station, const Record& record);
+  void terminal(Substation& station, const Record& record);
   void check_substation(const Substation& station);
 
   std::size_t at_ = 0;     ///< next line

@@ -114,6 +114,7 @@ TEST(FoundFiles, CorrectionTablesApplyAtThePresentTap) {
     RawCase c;
     c.transformers = "101,102,0,'T',1,1,1\n0.02,0.1,100\n" + winding + ",0,0,0,0,0,0,0,0,0,0,3\n1.0\n";
     c.other["impedance correction"] = table;
+    EXPECT_EQ(parse_raw_survey(c.text(), "case.raw").network.branches[2].x, c.read().branches[2].x);
     return c.read();
   };
   const std::string ratios = "3,0.9,1.2,1.0,1.0,1.1,1.3\n", angles = "3,-30.0,1.4,0.0,1.0,30.0,1.4\n";
@@ -304,6 +305,25 @@ TEST(FoundFiles, ARawxIsReadAsTheSameGrid) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(std::abs(va.voltage[i] - vb.voltage[i]), 0.0, 1e-12) << i;
   EXPECT_EQ(b.loads[0].id, "1");
   EXPECT_EQ(b.generators[1].q, 0.0);
+}
+/// The case with a substation, whose switch has this status and whose second node is of this bus.
+std::string with_substation(int closed, int bus) {
+  std::string text = kRawx;
+  text.insert(text.rfind("}}"), R"(, "sub": {"fields": ["isub", "name"], "data": [[1, "S"]]},
+ "subnode": {"fields": ["isub", "inode", "name", "ibus", "stat"], "data": [[1, 1, "a", 103, 1], [1, 2, "b", )" +
+                                    std::to_string(bus) + R"(, 1]]},
+ "subswd": {"fields": ["isub", "inode", "jnode", "swdid", "type", "stat"], "data": [[1, 1, 2, "1", 2, )" +
+                                    std::to_string(closed) + R"(]]},
+ "subterm": {"fields": ["isub", "inode", "type", "eqid", "ibus"], "data": [[1, 1, "L", "1", 103], [1, 2, "B", "1", )" +
+                                    std::to_string(bus) + "]]}");
+  return text;
+}
+TEST(FoundFiles, SubstationsOfARawxAreCheckedAsThoseOfARaw) {
+  EXPECT_EQ(parse_raw(with_substation(1, 103), "case.rawx").buses.size(), 3u);
+  EXPECT_THAT(sentences_of([&] { parse_raw(with_substation(0, 103), "case.rawx"); }),
+              HasSubstr("open switches split bus 103 at case.rawx, subterm 2"));
+  EXPECT_THAT(sentences_of([&] { parse_raw(with_substation(1, 102), "case.rawx"); }),
+              HasSubstr("closed switches join buses 103 and 102 at case.rawx, subterm 2"));
 }
 TEST(FoundFiles, NamesTableAndRowOfRawxErrors) {
   std::string text = kRawx;
