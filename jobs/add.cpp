@@ -141,8 +141,8 @@ std::optional<retrain::Retrained> retrain(const Arguments& a, const jobs::Retrai
   for (const auto& side : sides)
     if (!jobs::make_network(programs, side)) return std::nullopt;
   const std::array<calibrate::NetworkEstimate, 2> estimates = {
-      jobs::ask_network(programs, sides[0], a.of.model, a.of.records),
-      jobs::ask_network(programs, sides[1], (folder / kModel).string(), a.of.records)};
+      jobs::ask_network(programs, sides[0], a.of.model, a.of.records, a.of.reading.words()),
+      jobs::ask_network(programs, sides[1], (folder / kModel).string(), a.of.records, a.of.reading.words())};
   return retrain::compare_networks(estimates, before, added, truth);
 }
 

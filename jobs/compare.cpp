@@ -25,8 +25,16 @@ struct Arguments {
   bool fit_switchings = true;
 };
 
-std::string playback_name(const std::string& record) {
-  return "playback-" + std::filesystem::path(record).stem().string() + ".csv";
+/// Returns the file names of the records' curves: the record's name without ending, or the whole name if
+/// several records differ in the ending alone.
+std::vector<std::string> playback_names(const std::vector<record::Record>& records) {
+  const auto stem = [](const record::Record& r) { return std::filesystem::path(r.name).stem().string(); };
+  std::vector<std::string> names;
+  for (const auto& r : records) {
+    const bool alone = std::ranges::count(records, stem(r), stem) == 1;
+    names.push_back("playback-" + (alone ? stem(r) : r.name) + ".csv");
+  }
+  return names;
 }
 
 /// Compares a whole grid with records of several terminals.
@@ -52,22 +60,24 @@ int run_system(Arguments& a) {
   return compared.adequacy.adequate ? 0 : thresholds::kNotAdequate;
 }
 
-/// Writes the events that were compared before a stop signal, without a verdict.
-int write_interrupted(Arguments& a, std::size_t asked, const std::vector<compare::EventComparison>& events) {
+/// Writes the events that were compared before a stop signal, without a verdict. `curves`: file names of all
+/// records.
+int write_interrupted(Arguments& a, const std::vector<std::string>& curves,
+                      const std::vector<compare::EventComparison>& events) {
   OutputFolder& results = a.of.results();
-  const std::string sentence =
-      fmt::format("Interrupted before a verdict: {} of {} events were compared.", events.size(), asked);
+  const std::string sentence = fmt::format("Interrupted before a verdict: {} of {} events were compared.",
+                                           events.size(), curves.size());
   nlohmann::json result = {{"format", "swingbank-interrupted-1"},
                            {"interrupted", true},
                            {"command", a.command},
                            {"sentence", sentence},
-                           {"events_asked", asked},
+                           {"events_asked", curves.size()},
                            {"events", nlohmann::json::array()}};
   fmt::print("{}\n", sentence);
-  for (const auto& e : events) {
-    const auto file = results.file("interrupted-" + playback_name(e.record.name));
-    write_file(file, compare::csv_playback(e));
-    result["events"].push_back({{"record", e.record.name}, {"curves", file.filename().string()}});
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const auto file = results.file("interrupted-" + curves[i]);
+    write_file(file, compare::csv_playback(events[i]));
+    result["events"].push_back({{"record", events[i].record.name}, {"curves", file.filename().string()}});
     fmt::print("curves: {}\n", file.string());
   }
   write_file(results.file(kInterrupted), json_text(result, 1) + "\n");
@@ -85,9 +95,8 @@ int run(Arguments& a) {
   problems.raise();
   records = a.of.compared(std::move(records));
   std::vector<std::string> names = {kPage, kResult, kInterrupted};
-  for (const auto& record : records)
-    for (const std::string& name : {playback_name(record.name), "interrupted-" + playback_name(record.name)})
-      if (std::ranges::count(names, name) == 0) names.push_back(name);
+  const std::vector<std::string> curves = playback_names(records);
+  for (const auto& name : curves) names.insert(names.end(), {name, "interrupted-" + name});
   a.of.open_results("compare", names);
   compare::CompareOptions options = a.of.comparing();
   options.input = a.input == "pq" ? compare::PlaybackInput::power : compare::PlaybackInput::voltage;
@@ -104,15 +113,15 @@ int run(Arguments& a) {
     }
   } catch (const Interrupted&) {
     if (events.empty()) throw;
-    return write_interrupted(a, records.size(), events);
+    return write_interrupted(a, curves, events);
   }
   OutputFolder& results = a.of.results();
   const compare::Adequacy adequacy = compare::judge(events);
   const compare::Fitness fitness = compare::judge_fitness(events, model.plant.mva, a.of.judging.by);
   report::Provenance rows = compare::provenance(model, events, a.command);
   jobs::sign(rows, a.of.judging, a.of.model, a.of.records);
-  for (const auto& e : events)
-    write_file(results.file(playback_name(e.record.name)), compare::csv_playback(e));
+  for (std::size_t i = 0; i < events.size(); ++i)
+    write_file(results.file(curves[i]), compare::csv_playback(events[i]));
   const compare::HandedIn handed = compare::handed_in(model, events);
   const std::string result = compare::json_report(model, events, adequacy, fitness, handed, rows);
   write_file(results.file(kResult), result);

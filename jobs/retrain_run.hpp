@@ -41,16 +41,18 @@ inline bool make_network(const RetrainPrograms& programs, const validate::retrai
                                "retrain", "--out", side.results.string()});
 }
 
-/// Returns the parameter estimate of one side's network from the records. Throws InputError if `predict`
-/// fails.
+/// Returns the parameter estimate of one side's network from the records. `reading`: options that state
+/// columns, time range and measuring point. Throws InputError if `predict` fails.
 inline validate::calibrate::NetworkEstimate ask_network(const RetrainPrograms& programs,
                                                         const validate::retrain::RetrainSide& side,
                                                         const std::string& model,
-                                                        const std::vector<std::string>& records) {
+                                                        const std::vector<std::string>& records,
+                                                        const std::vector<std::string>& reading) {
   const auto file = side.folder / "estimates.json";
   std::vector<std::string> words = {"--network", side.results.string(), "--model",  model,
                                     "--out",     file.string(),         "--records"};
   words.insert(words.end(), records.begin(), records.end());
+  words.insert(words.end(), reading.begin(), reading.end());
   if (run_own(programs.predict, words) != 0)
     throw InputError({fmt::format("no estimate by the network {} the effect", side.name),
                       side.results.string(), "see the message of swingbank predict above",
