@@ -118,6 +118,9 @@ void merge_datasets(const std::vector<fs::path>& from, const fs::path& into,
                           "give a new or empty folder"});
     write_header(into, header);
   }
+  for (const fs::path& folder : from)
+    if (fs::exists(folder / "card.json") && !fs::exists(into / "card.json"))
+      write_text(into / "card.json", read_text(folder / "card.json"));
   Merge merge(into, header);
   for (const fs::path& folder : from) merge.add(folder, done);
   merge.raise();
