@@ -96,6 +96,15 @@ std::vector<std::size_t> choose_columns(std::vector<Heading>& headings, const Re
 Record build_record(RawRecord raw, const RecordBase& base, const ReadOptions& options, SampleFaults faults,
                     Problems problems, const std::string& file);
 
+/// Returns the channel of a record; nullptr for a quantity that is converted to others.
+std::vector<double>* channel(Record& record, Quantity quantity);
+/// Returns a column's values at fractional row numbers, interpolated linearly; NaN where the row number is
+/// NaN.
+std::vector<double> at_places(const std::vector<double>& values, const std::vector<double>& places);
+/// Integrates the frequency if no angle was recorded. Without a frequency, and for an exciter or governor,
+/// the angle is zero and its source is AngleSource::none.
+void settle_angle(Record& record, const ReadOptions& options);
+
 /// Joins the columns of several files of one event to one record, sampled at the times of the file that
 /// contains P (without P: of the last file). Throws InputError if a quantity is missing or occurs twice.
 Record join_records(std::vector<Record> parts, const ReadOptions& options, const std::string& files);
