@@ -158,17 +158,29 @@ class MatReader {
 
   void variable(matvar_t& v) { take(v, v.name == nullptr ? "?" : v.name, "", 0); }
 
-  /// Returns the columns that are as long as the time, as text separated by tabs, which parse_record reads.
+  /// Returns the columns as text separated by tabs, which parse_record reads. A vector that is not as long as
+  /// the time is an empty column (numbers of columns then still count it), or an error if it has the name of
+  /// a quantity.
   std::string text(const std::string& time) {
     name_tables();
     const std::size_t rows = time_rows(time);
-    std::erase_if(columns_, [&](const MatColumn& c) { return c.values.size() != rows; });
+    std::string other;
+    for (MatColumn& c : columns_)
+      if (c.values.size() != rows) {
+        if (column_meaning(c.name)) other += fmt::format(", {} has {}", c.name, c.values.size());
+        c.values.clear();
+      }
+    if (!other.empty())
+      refuse("vectors of different lengths", fmt::format("the time has {} samples{}", rows, other),
+             "save one value per sample, and remove or rename vectors of another event");
     std::string out;
     for (std::size_t c = 0; c < columns_.size(); ++c) out += (c > 0 ? "\t" : "") + columns_[c].name;
     for (std::size_t r = 0; r < rows; ++r) {
       out += '\n';
-      for (std::size_t c = 0; c < columns_.size(); ++c)
-        fmt::format_to(std::back_inserter(out), "{}{}", c > 0 ? "\t" : "", columns_[c].values[r]);
+      for (std::size_t c = 0; c < columns_.size(); ++c) {
+        if (c > 0) out += '\t';
+        if (!columns_[c].values.empty()) fmt::format_to(std::back_inserter(out), "{}", columns_[c].values[r]);
+      }
     }
     return out + '\n';
   }

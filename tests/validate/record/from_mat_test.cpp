@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/validate/playin/support.hpp"
@@ -128,6 +129,24 @@ TEST_P(RecordMatTest, NamesWithoutUnitsAreMapped) {
                              {"Q", number(5, 2) + " [Mvar]"}}});
   EXPECT_THAT(complaints({.columns = {{"t", "watch [s]"}}}),
               ElementsAre(AllOf(HasSubstr("no time vector 'watch [s]'"), HasSubstr("clock (90x1)"))));
+}
+
+TEST_P(RecordMatTest, RefusesAChannelThatIsNotAsLongAsTheTime) {
+  auto power = column_of(3);
+  power.pop_back();
+  auto variables = vectors();
+  Mat_VarFree(std::exchange(variables[3], vector_of("P_MW", power)));
+  write(variables);
+  EXPECT_THAT(complaints(), ElementsAre(HasSubstr("the time has 90 samples, P_MW has 89")));
+}
+
+TEST_P(RecordMatTest, NumbersCountVectorsOfOtherLengths) {
+  auto variables = vectors();
+  variables.insert(variables.begin(), vector_of("A", {1, 2, 3}));
+  write(variables);
+  const bool sorted = GetParam() == MAT_FT_MAT73;  // A, P_MW, Q_Mvar, V_kV, f_Hz, t_s
+  expect_record({.columns = {{"t", sorted ? "#6" : "#2"}, {"P", sorted ? "#2" : "#5"}}});
+  EXPECT_THAT(complaints({.columns = {{"P", "#1 [MW]"}}}), ElementsAre(HasSubstr("A = ''")));
 }
 
 TEST_P(RecordMatTest, MatrixHasItsListOfNames) {
