@@ -15,6 +15,8 @@ work, source = map(pathlib.Path, sys.argv[1:])
 printed = json.loads((work / "table.json").read_text())
 header = (source / "validate/thresholds/thresholds.hpp").read_text()
 declared = re.findall(r"Threshold \w+\{\s*\"([\w.]+)\"", header)
+declared += [f"{preset}.{key}" for preset in ("dtr-test", "dtr-simulation")
+             for key in [f"{w}.{e}" for w in ("pre_fault", "fault", "post_fault") for e in ("mxe", "me", "mae")] + ["after_fault", "after_clearing"]]
 assert [t["name"] for t in printed] == declared, set(declared) ^ {t["name"] for t in printed}
 rows = {line.split()[0]: line for line in (work / "table.txt").read_text().splitlines()[1:]}
 assert list(rows) == declared
@@ -26,6 +28,7 @@ for t in printed:
             assert list((source / "docs/decisions").glob(f"{int(n):02d}-*.md")), f"no decision {n}: {t['name']}"
 value = {t["name"]: t["value"] for t in printed}
 assert value["evidence.accepted"] == 40 and value["adequacy.reduced_chi2"] == 1.12 and value["addition.strong"] == 10
+assert value["dtr-test.fault.me"] == 5 and value["dtr-simulation.post_fault.mae"] == 3 and value["dtr-simulation.after_clearing"] == 0.06
 PYTHON
 
 code=0

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -17,29 +18,24 @@
 namespace swingbank::validate::thresholds {
 namespace {
 
-/// Maximum times that IEC 61400-27-2 excludes after a fault and after its clearing [s].
-constexpr double kMostAfterFault = 0.14, kMostAfterClearing = 0.5;
 constexpr double kMostPercent = 1000;
 
-/// Returns one preset of thresholds.hpp; P and Q have the same limits.
-template <class Preset>
-Acceptance acceptance_of(const Preset& p, std::string name, std::string source) {
-  const std::array<Errors, 3> one = {Errors{p.pre_fault_mxe, p.pre_fault_me, p.pre_fault_mae},
-                                     Errors{p.fault_mxe, p.fault_me, p.fault_mae},
-                                     Errors{p.post_fault_mxe, p.post_fault_me, p.post_fault_mae}};
-  return {std::move(name), std::move(source), {one, one}, p.after_fault, p.after_clearing, movement.error};
+/// Returns limits of data sheet I16 for P and Q; `of` is what the model is compared with.
+Acceptance dtr(const char* name, const char* of, const std::array<Errors, 3>& limits) {
+  return {name,
+          fmt::format("French grid code (RTE DTR), data sheet I16, limits for comparison with {}, as "
+                      "implemented in DyCoV 1.1",
+                      of),
+          {limits, limits},
+          0.02,
+          0.06,
+          movement.error};
 }
 
 const std::vector<Acceptance>& presets() {
   static const std::vector<Acceptance> all = {
-      acceptance_of(
-          dtr_test, "dtr-test",
-          "French grid code (RTE DTR), data sheet I16, limits for comparison with measurements, as implemented "
-          "in DyCoV 1.1"),
-      acceptance_of(
-          dtr_simulation, "dtr-simulation",
-          "French grid code (RTE DTR), data sheet I16, limits for comparison with simulations, as implemented "
-          "in DyCoV 1.1"),
+      dtr("dtr-test", "measurements", {{{8, 4, 7}, {10, 5, 8}, {8, 4, 7}}}),
+      dtr("dtr-simulation", "simulations", {{{5, 2, 3}, {8, 5, 7}, {5, 2, 3}}}),
   };
   return all;
 }
@@ -51,6 +47,23 @@ const Acceptance* preset(const std::string& name) {
 
 /// Keys of the windows in the file.
 constexpr std::array<std::string_view, 3> kKeys = {"pre_fault", "fault", "post_fault"};
+/// Keys of the errors in the file.
+constexpr struct {
+  const char* key;
+  double Errors::*value;
+  const char* meaning;
+} kErrors[] = {{"mxe", &Errors::mxe, "largest absolute value of modelled - measured"},
+               {"me", &Errors::me, "absolute value of the mean of modelled - measured"},
+               {"mae", &Errors::mae, "mean absolute value of modelled - measured"}};
+/// Keys of the times excluded after switching, and the maximum times of IEC 61400-27-2 [s].
+constexpr struct {
+  const char* key;
+  double Acceptance::*value;
+  double most;
+  const char* meaning;
+} kLeftOut[] = {
+    {"after_fault", &Acceptance::after_fault, 0.14, "time excluded after the first switching of a fault"},
+    {"after_clearing", &Acceptance::after_clearing, 0.5, "time excluded after the last switching"}};
 
 Acceptance read(Config& file) {
   Acceptance a;
@@ -69,20 +82,13 @@ Acceptance read(Config& file) {
       const auto at = static_cast<std::size_t>(phase);
       const std::string table = fmt::format("{}.{}.", channel == 0 ? "P" : "Q", kKeys[at]);
       const Errors otherwise = from ? from->of(channel, phase) : Errors{};
-      const auto limit = [&](const char* key, double value, const char* meaning) {
-        return number(table + key, value, {0.001, kMostPercent, "% of MVA", meaning});
-      };
-      a.limits[static_cast<std::size_t>(channel)][at] = {
-          limit("mxe", otherwise.mxe, "largest absolute value of modelled - measured"),
-          limit("me", otherwise.me, "absolute value of the mean of modelled - measured"),
-          limit("mae", otherwise.mae, "mean absolute value of modelled - measured")};
+      for (const auto& error : kErrors)
+        a.limits[static_cast<std::size_t>(channel)][at].*error.value = number(
+            table + error.key, otherwise.*error.value, {0.001, kMostPercent, "% of MVA", error.meaning});
     }
-  a.after_fault =
-      file.optional<double>("left_out.after_fault", from ? from->after_fault : 0,
-                            {0, kMostAfterFault, "s", "time excluded after the first switching of a fault"});
-  a.after_clearing =
-      file.optional<double>("left_out.after_clearing", from ? from->after_clearing : 0,
-                            {0, kMostAfterClearing, "s", "time excluded after the last switching"});
+  for (const auto& time : kLeftOut)
+    a.*time.value = file.optional<double>(fmt::format("left_out.{}", time.key), from ? from->*time.value : 0,
+                                          {0, time.most, "s", time.meaning});
   a.movement = file.optional<double>(
       "movement.error", movement.error,
       {0.001, kMostPercent, "% of movement", "RMS of modelled - measured after the last switching"});
@@ -101,6 +107,27 @@ std::vector<std::string> acceptance_presets() {
   std::vector<std::string> names;
   for (const Acceptance& a : presets()) names.push_back(a.name);
   return names;
+}
+
+std::vector<Threshold> preset_thresholds() {
+  // The texts of a threshold are only views.
+  static std::deque<std::string> texts;
+  static const std::vector<Threshold> all = [] {
+    std::vector<Threshold> limits;
+    for (const Acceptance& a : presets()) {
+      const auto add = [&](std::string key, double value, const char* unit, const char* meaning) {
+        limits.push_back({texts.emplace_back(a.name + "." + std::move(key)), value, unit,
+                          texts.emplace_back(fmt::format("{} ({})", meaning, a.source))});
+      };
+      for (const Phase phase : kPhases)
+        for (const auto& error : kErrors)
+          add(fmt::format("{}.{}", kKeys[static_cast<std::size_t>(phase)], error.key),
+              a.of(0, phase).*error.value, "% of MVA", error.meaning);
+      for (const auto& time : kLeftOut) add(time.key, a.*time.value, "s", time.meaning);
+    }
+    return limits;
+  }();
+  return all;
 }
 
 Acceptance read_acceptance(const std::string& what) {

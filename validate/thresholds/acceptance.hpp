@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "validate/thresholds/thresholds.hpp"
+
 namespace swingbank::validate::thresholds {
 
 /// Windows of an event: before the first switching, between the first and the last one, and after the last
@@ -36,6 +38,8 @@ struct Acceptance {
 
 /// Names of the presets; the first is the default.
 std::vector<std::string> acceptance_presets();
+/// Returns the limits of every preset: "dtr-test.fault.mxe", of P and of Q.
+std::vector<Threshold> preset_thresholds();
 /// Returns the preset `what` (the default if empty) or the limits of the file of that name. Throws InputError
 /// with every problem of the file, or if neither a preset nor a file has this name.
 Acceptance read_acceptance(const std::string& what);

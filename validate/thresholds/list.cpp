@@ -1,10 +1,13 @@
 #include "validate/thresholds/list.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 
 #include "base/json.hpp"
+#include "validate/thresholds/acceptance.hpp"
 
 namespace swingbank::validate::thresholds {
 namespace {
@@ -31,9 +34,8 @@ std::vector<Threshold> all_thresholds() {
   add(user_models, all);
   add(addition, all);
   add(parameters, all);
-  add(dtr_test, all);
-  add(dtr_simulation, all);
   add(movement, all);
+  std::ranges::copy(preset_thresholds(), std::back_inserter(all));
   return all;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
-// Every number that decides a verdict: limits of noise, evidence, prediction and adequacy. Each struct is a
-// group of thresholds; `swingbank diagnose --thresholds` prints them all. Numbers that only control the
-// effort of a search (steps, starts, iterations) are defined with the search.
+// The numbers that decide a verdict: limits of noise, evidence, prediction and adequacy. Each struct is a
+// group of thresholds; `swingbank diagnose --thresholds` prints them all, with the limits of fit for purpose
+// (acceptance.hpp). Numbers that only control the effort of a search (steps, starts, iterations) are defined
+// with the search.
 #include <string_view>
 
 namespace swingbank::validate::thresholds {
@@ -253,105 +254,6 @@ struct Parameters {
 };
 inline constexpr Parameters parameters;  ///< the thresholds in use
 
-/// Fit for purpose: engineering limits of a model's errors in each window, with the error measures of IEC
-/// 61400-27-2, which sets no limits itself. The limits are those of the French grid code (RTE DTR), data
-/// sheet I16, for comparison with measurements and with simulations, as implemented in DyCoV 1.1; `--accept`
-/// selects others (acceptance.hpp).
-struct DtrTest {
-  /// Limit of the maximum absolute error before the first switching [% of MVA].
-  Threshold pre_fault_mxe{
-      "dtr_test.pre_fault_mxe", 8, "% of MVA",
-      "maximum of |modelled - measured| of P and of Q, before the first switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Limit of the absolute mean error before the first switching [% of MVA].
-  Threshold pre_fault_me{
-      "dtr_test.pre_fault_me", 4, "% of MVA",
-      "|mean of modelled - measured| of P and of Q, before the first switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Limit of the mean absolute error before the first switching [% of MVA].
-  Threshold pre_fault_mae{
-      "dtr_test.pre_fault_mae", 7, "% of MVA",
-      "mean of |modelled - measured| of P and of Q, before the first switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Limit of the maximum absolute error between the first and the last switching [% of MVA].
-  Threshold fault_mxe{
-      "dtr_test.fault_mxe", 10, "% of MVA",
-      "maximum of |modelled - measured| of P and of Q, between the first and the last switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Limit of the absolute mean error between the first and the last switching [% of MVA].
-  Threshold fault_me{
-      "dtr_test.fault_me", 5, "% of MVA",
-      "|mean of modelled - measured| of P and of Q, between the first and the last switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Limit of the mean absolute error between the first and the last switching [% of MVA].
-  Threshold fault_mae{
-      "dtr_test.fault_mae", 8, "% of MVA",
-      "mean of |modelled - measured| of P and of Q, between the first and the last switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Limit of the maximum absolute error after the last switching [% of MVA].
-  Threshold post_fault_mxe{
-      "dtr_test.post_fault_mxe", 8, "% of MVA",
-      "maximum of |modelled - measured| of P and of Q, after the last switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Limit of the absolute mean error after the last switching [% of MVA].
-  Threshold post_fault_me{
-      "dtr_test.post_fault_me", 4, "% of MVA",
-      "|mean of modelled - measured| of P and of Q, after the last switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Limit of the mean absolute error after the last switching [% of MVA].
-  Threshold post_fault_mae{
-      "dtr_test.post_fault_mae", 7, "% of MVA",
-      "mean of |modelled - measured| of P and of Q, after the last switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Time after the first switching that is not compared [s].
-  Threshold after_fault{
-      "dtr_test.after_fault", 0.02, "s",
-      "not compared after the first switching (RTE DTR, data sheet I16, comparison with measurements)"};
-  /// Time after the last switching that is not compared [s].
-  Threshold after_clearing{
-      "dtr_test.after_clearing", 0.06, "s",
-      "not compared after the last switching (RTE DTR, data sheet I16, comparison with measurements)"};
-};
-inline constexpr DtrTest dtr_test;  ///< the limits in use
-/// The corresponding limits for a comparison with a simulated reference.
-struct DtrSimulation {
-  /// Limit of the maximum absolute error before the first switching [% of MVA].
-  Threshold pre_fault_mxe{
-      "dtr_simulation.pre_fault_mxe", 5, "% of MVA",
-      "maximum of |modelled - measured| of P and of Q, before the first switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Limit of the absolute mean error before the first switching [% of MVA].
-  Threshold pre_fault_me{
-      "dtr_simulation.pre_fault_me", 2, "% of MVA",
-      "|mean of modelled - measured| of P and of Q, before the first switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Limit of the mean absolute error before the first switching [% of MVA].
-  Threshold pre_fault_mae{
-      "dtr_simulation.pre_fault_mae", 3, "% of MVA",
-      "mean of |modelled - measured| of P and of Q, before the first switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Limit of the maximum absolute error between the first and the last switching [% of MVA].
-  Threshold fault_mxe{
-      "dtr_simulation.fault_mxe", 8, "% of MVA",
-      "maximum of |modelled - measured| of P and of Q, between the first and the last switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Limit of the absolute mean error between the first and the last switching [% of MVA].
-  Threshold fault_me{
-      "dtr_simulation.fault_me", 5, "% of MVA",
-      "|mean of modelled - measured| of P and of Q, between the first and the last switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Limit of the mean absolute error between the first and the last switching [% of MVA].
-  Threshold fault_mae{
-      "dtr_simulation.fault_mae", 7, "% of MVA",
-      "mean of |modelled - measured| of P and of Q, between the first and the last switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Limit of the maximum absolute error after the last switching [% of MVA].
-  Threshold post_fault_mxe{
-      "dtr_simulation.post_fault_mxe", 5, "% of MVA",
-      "maximum of |modelled - measured| of P and of Q, after the last switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Limit of the absolute mean error after the last switching [% of MVA].
-  Threshold post_fault_me{
-      "dtr_simulation.post_fault_me", 2, "% of MVA",
-      "|mean of modelled - measured| of P and of Q, after the last switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Limit of the mean absolute error after the last switching [% of MVA].
-  Threshold post_fault_mae{
-      "dtr_simulation.post_fault_mae", 3, "% of MVA",
-      "mean of |modelled - measured| of P and of Q, after the last switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Time after the first switching that is not compared [s].
-  Threshold after_fault{
-      "dtr_simulation.after_fault", 0.02, "s",
-      "not compared after the first switching (RTE DTR, data sheet I16, comparison with simulations)"};
-  /// Time after the last switching that is not compared [s].
-  Threshold after_clearing{
-      "dtr_simulation.after_clearing", 0.06, "s",
-      "not compared after the last switching (RTE DTR, data sheet I16, comparison with simulations)"};
-};
-inline constexpr DtrSimulation dtr_simulation;  ///< the limits in use
 /// Limit of a channel's error relative to its movement, the deviation from its value before the event. A
 /// limit in % of MVA alone would accept a model without any response, if the measured response is small.
 struct Movement {

@@ -27,8 +27,8 @@ std::string refused(const std::string& text) {
 TEST(Acceptance, DefaultIsThePresetForMeasuredReferences) {
   const Acceptance a = read_acceptance("");
   EXPECT_EQ(a.name, "dtr-test");
-  EXPECT_EQ(a.of(0, Phase::fault).mxe, dtr_test.fault_mxe.value);
-  EXPECT_EQ(a.of(1, Phase::post_fault).me, dtr_test.post_fault_me.value);
+  EXPECT_EQ(a.of(0, Phase::fault).mxe, 10);
+  EXPECT_EQ(a.of(1, Phase::post_fault).me, 4);
   EXPECT_EQ(a.after_clearing, 0.06);
   EXPECT_EQ(a.movement, 25);
   EXPECT_EQ(read_acceptance("dtr-simulation").of(0, Phase::post_fault).mae, 3);
