@@ -12,14 +12,13 @@ const CriterionRecord& criterion_record(Criterion criterion) {
       {"bins",
        "bins of the error maps that exceed their noise limit, or whose noise limit exceeds the "
        "channel's nominal value",
-       "bins", "at"},
-      {"events", "largest reduced chi-square of an event, parameters refitted", "chi2 per value", "up to"},
-      {"reduced_chi2", "reduced chi-square of all events, parameters refitted", "chi2 per value", "up to"},
-      {"slow", "slow drift of the residual, parameters refitted", "standard deviations", "below"},
-      {"line", "chi2 of a steady oscillation of one frequency in all events, above its penalty", "chi2",
-       "up to"},
-      {"free_input", "evidence of an inferred input", "chi2", "up to"},
-      {"named_effect", "evidence of the named effect", "chi2", "below"},
+       "bins"},
+      {"events", "largest reduced chi-square of an event, parameters refitted", "chi2 per value"},
+      {"reduced_chi2", "reduced chi-square of all events, parameters refitted", "chi2 per value"},
+      {"slow", "slow drift of the residual, parameters refitted", "standard deviations"},
+      {"line", "chi2 of a steady oscillation of one frequency in all events, above its penalty", "chi2"},
+      {"free_input", "evidence of an inferred input", "chi2"},
+      {"named_effect", "evidence of the named effect", "chi2"},
   }};
   return records[static_cast<std::size_t>(criterion)];
 }

@@ -31,10 +31,9 @@ enum class Criterion {
 
 /// Name and description of a criterion for reports.
 struct CriterionRecord {
-  std::string_view name;            ///< name in JSON
-  std::string_view asks;            ///< description of the measured quantity for reports
-  std::string_view unit;            ///< unit of value and limit
-  std::string_view while_adequate;  ///< relation of value to limit while the model is adequate
+  std::string_view name;  ///< name in JSON
+  std::string_view asks;  ///< description of the measured quantity for reports
+  std::string_view unit;  ///< unit of value and limit
 };
 /// Returns the record of a criterion.
 const CriterionRecord& criterion_record(Criterion criterion);
