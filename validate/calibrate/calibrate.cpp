@@ -13,7 +13,7 @@
 #include "validate/calibrate/detail/closed_start.hpp"
 #include "validate/calibrate/detail/identify.hpp"
 #include "validate/calibrate/detail/newton.hpp"
-#include "validate/calibrate/detail/screen.hpp"
+#include "validate/calibrate/detail/prior_draw.hpp"
 #include "validate/calibrate/detail/voltage_noise.hpp"
 #include "validate/fit/interrupted.hpp"
 #include "validate/fit/sign.hpp"
@@ -121,12 +121,13 @@ class Calibrating {
     std::vector<fit::EventState> states;
     for (std::size_t e = 0; e < before_.size(); ++e)
       if (!out_[e]) states.push_back(before_[e].state);
-    const Screen screen(model_.plant, free_, options_.seed);
     const auto start = [&](const std::string& name, const std::vector<double>& values) {
-      return Start{name, values, chi2_of({screen.with(values), model_.conventions}, seen_, states)};
+      return Start{
+          name, values,
+          chi2_of({fit::with_values(model_.plant, free_, values), model_.conventions}, seen_, states)};
     };
     Starts starts;
-    if (!options_.only_given) starts.push_back(start("model", screen.own()));
+    if (!options_.only_given) starts.push_back(start("model", fit::values_of(model_.plant, free_)));
     Starts closed;
     if (options_.events.measured_states && !options_.only_given)
       for (const auto& values : closed_starts(model_.under_test(), seen_, free_))
@@ -138,7 +139,7 @@ class Calibrating {
     std::vector<fit::Fit> fits;
     refine(starts, states, fits);
     if (!straight || !fits.front().failed.empty() || fits.front().reduced_chi2() > options_.adequate)
-      refine(drawn(screen, states), states, fits);
+      refine(drawn(states), states, fits);
     choose(fits);
   }
   struct Start {
@@ -149,14 +150,16 @@ class Calibrating {
   using Starts = std::vector<Start>;
 
   /// Returns the best of the random parameter sets about the model's values.
-  [[nodiscard]] Starts drawn(const Screen& screen, const std::vector<fit::EventState>& states) const {
+  [[nodiscard]] Starts drawn(const std::vector<fit::EventState>& states) const {
     std::vector<std::vector<double>> draws(static_cast<std::size_t>(std::max(0, options_.draws)));
     std::vector<std::pair<double, std::size_t>> order(draws.size());
     in_parallel(
         draws.size(),
         [&](std::size_t k) {
-          draws[k] = screen.draw(k);
-          order[k] = {chi2_of({screen.with(draws[k]), model_.conventions}, seen_, states), k};
+          draws[k] = prior_draw(model_.plant, free_, options_.seed + k);
+          order[k] = {
+              chi2_of({fit::with_values(model_.plant, free_, draws[k]), model_.conventions}, seen_, states),
+              k};
         },
         [&](int done) { report(event::Phase::parameter_sets, done, options_.draws); });
     std::ranges::sort(order);

@@ -87,8 +87,7 @@ double Draws::ordered(std::size_t i, std::uint64_t sample) const {
 }
 
 bool Draws::runs(const std::vector<double>& values) const {
-  sim::plant::Plant plant = plant_;
-  for (std::size_t i = 0; i < free_.size(); ++i) parameter_value(plant, free_[i].id) = values[i];
+  const sim::plant::Plant plant = with_values(plant_, free_, values);
   return std::ranges::all_of(free_, [&](const FreeParameter& f) {
     return playin::can_run(sim::plant::block_at(plant, f.id.block));
   });

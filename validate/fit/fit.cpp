@@ -373,9 +373,7 @@ Fit fit(const sim::plant::PlantUnderTest& tested, const noise::WhitenedEvents& e
   setting.lenient = options.lenient;
   setting.goes_on = !options.errors;
   for (const auto& f : free) setting.axes.push_back(make_axis(tested.plant, f));
-  sim::plant::Plant start = tested.plant;
-  for (std::size_t i = 0; i < options.values.size(); ++i)
-    parameter_value(start, free[i].id) = options.values[i];
+  const sim::plant::Plant start = with_values(tested.plant, free, options.values);
   setting.can_exist = playin::can_exist_beside(start, tested.plant);
   FitOptions begun = options;
   if (begun.start.empty()) begun.start = early_states({start, tested.conventions}, events, options);

@@ -33,6 +33,9 @@ std::vector<FreeParameter> free_parameters(const sim::plant::Plant& plant, doubl
 
 /// Returns the present values of the free parameters.
 std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<FreeParameter>& free);
+/// Returns the plant with these values of the free parameters; without `values`, the plant as it is.
+sim::plant::Plant with_values(sim::plant::Plant plant, const std::vector<FreeParameter>& free,
+                              const std::vector<double>& values);
 
 /// A fitted parameter with standard error and 95 % interval.
 struct FittedParameter {

@@ -10,6 +10,11 @@ std::vector<double> values_of(const sim::plant::Plant& plant, const std::vector<
   for (const auto& f : free) values.push_back(parameter_value(plant, f.id));
   return values;
 }
+sim::plant::Plant with_values(sim::plant::Plant plant, const std::vector<FreeParameter>& free,
+                              const std::vector<double>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) parameter_value(plant, free[i].id) = values[i];
+  return plant;
+}
 
 std::string bounds_text(const std::vector<FittedParameter>& parameters) {
   std::string names;

@@ -284,9 +284,7 @@ std::vector<std::vector<double>> draws_of(const Hypothesis& h, const std::vector
   for (std::uint64_t number = 0; number < kGroupDraws; ++number) {
     const auto values = draw(number);
     if (!values) continue;
-    for (std::size_t i = 0; i < freed.size(); ++i)
-      sim::plant::parameter_value(plant, freed[i].id) = (*values)[i];
-    all.push_back(fit::values_of(plant, h.free));
+    all.push_back(fit::values_of(fit::with_values(plant, freed, *values), h.free));
   }
   return all;
 }
@@ -368,9 +366,7 @@ std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Pla
 std::string full_name(const Hypothesis& h) { return h.with.empty() ? h.name : h.with + " + " + h.name; }
 
 sim::plant::Plant started(const Hypothesis& h, const std::vector<double>& start) {
-  sim::plant::Plant plant = h.plant;
-  for (std::size_t i = 0; i < h.free.size(); ++i) sim::plant::parameter_value(plant, h.free[i].id) = start[i];
-  return plant;
+  return fit::with_values(h.plant, h.free, start);
 }
 
 }  // namespace swingbank::validate::hypothesis
