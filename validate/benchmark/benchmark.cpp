@@ -210,7 +210,7 @@ TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& give
   for (const playin::Output o : outputs)
     e.channels.push_back(
         channel_of(rule_of(o, e.record.base, per_machine),
-                   in.against && !behind ? output_of(other, o) : playin::measured_values(e.record, o),
+                   in.against && !behind ? output_of(other, o) : playin::output_of(e.record, o),
                    output_of(e.playback, o), e));
   if (behind)
     e.channels.push_back(

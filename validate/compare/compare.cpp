@@ -127,7 +127,7 @@ void measure_channels(const plant::PlantModel& model, PlaybackInput input,
   };
   if (e.record.component != record::Component::plant || e.record.breaker()) {
     for (const playin::Output o : playin::compared_outputs(e.record, true))
-      add_output(o, playin::measured_values(e.record, o), playin::output_of(e.playback, o),
+      add_output(o, playin::output_of(e.record, o), playin::output_of(e.playback, o),
                  o != playin::Output::gate, true);
     return;
   }

@@ -10,14 +10,11 @@ namespace swingbank::validate::compare {
 namespace {
 
 const std::vector<double>& output(const playin::Playback& p, const std::string& channel) {
-  using Member = std::vector<double> playin::Playback::*;
-  static constexpr std::pair<const char*, Member> kOutputs[] = {
-      {"P", &playin::Playback::P},       {"Q", &playin::Playback::Q},     {"speed", &playin::Playback::speed},
-      {"Efd", &playin::Playback::Efd},   {"Ifd", &playin::Playback::Ifd}, {"Pm", &playin::Playback::Pm},
-      {"gate", &playin::Playback::gate}, {"V", &playin::Playback::V}};
-  const auto known = std::ranges::find_if(kOutputs, [&](const auto& o) { return channel == o.first; });
+  for (int o = 0; o < playin::kOutputs; ++o)
+    if (const auto output = static_cast<playin::Output>(o); playin::output_name(output) == channel)
+      return playin::output_of(p, output);
   static const std::vector<double> kNone;
-  return known == std::end(kOutputs) ? kNone : p.*(known->second);
+  return kNone;
 }
 
 playin::Playback played(const sim::plant::PlantUnderTest& tested, const EventComparison& e) {

@@ -5,9 +5,7 @@
 
 namespace swingbank::validate::event {
 
-const std::vector<double>& FitEvent::measured(playin::Output o) const {
-  return playin::measured_values(record, o);
-}
+const std::vector<double>& FitEvent::measured(playin::Output o) const { return playin::output_of(record, o); }
 
 bool FitEvent::turns() const {
   return record.angle == record::AngleSource::integrated && !playin::is_part(record) && !record.breaker();

@@ -157,7 +157,7 @@ class Search {
     o.callbacks.push_back(&steps);
     o.max_num_iterations =
         iterations > 0 && iterations <= kFewSteps ? iterations + kRefusedSteps : iterations;
-    o.function_tolerance = options_.enough;
+    o.function_tolerance = 1e-5;  // relative change of the cost
     o.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     o.logging_type = ceres::SILENT;
     o.num_threads = 1;  // hypotheses run in parallel

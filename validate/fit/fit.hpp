@@ -133,7 +133,6 @@ struct FitOptions {
   /// the larger integration errors too.
   bool brief = false;
   bool steady_start = false;  ///< whether every event starts in its pre-event steady state
-  double enough = 1e-5;       ///< relative change of the cost that ends the fit
   /// Start values of the event states. Empty: those of the FitEvent; if a response diverges from its record,
   /// its switching times are first fitted to the early part of the record.
   std::vector<EventState> start = {};

@@ -20,6 +20,7 @@ struct RecordedMachine {
                                     title = "machine whose signals are those of the record",
                                     source = "the record", description = "";
   static constexpr Slot slot = Slot::machine;
+  static constexpr std::array<sim::Parameter, 0> parameters = {};
   static constexpr sim::State states[] = {{"delta", "rad", "constant"}, {"speed", "pu", "constant"}};
   static constexpr int coefficients = recorded::kCoefficients, scratch = recorded::kMoves;
 
@@ -126,24 +127,7 @@ std::vector<std::string> used_signals(const sim::plant::PlantUnderTest& part) {
 }  // namespace
 
 const sim::Effect& recorded_machine() {
-  static const sim::Effect effect = [] {
-    sim::Effect e{};
-    e.name = RecordedMachine::name;
-    e.title = RecordedMachine::title;
-    e.source = RecordedMachine::source;
-    e.description = RecordedMachine::description;
-    e.slot = RecordedMachine::slot;
-    e.states = RecordedMachine::states;
-    e.raw_resistance = e.raw_reactance = -1;
-    e.coefficients = RecordedMachine::coefficients;
-    e.scratch = RecordedMachine::scratch;
-    e.check = [](const void*, const double*, const std::string&, Problems&) {};
-    e.unphysical = &RecordedMachine::unphysical;
-    std::get<sim::Ops<double>>(e.ops) = sim::make_ops<RecordedMachine, double>();
-    std::get<sim::Ops<sim::D8>>(e.ops) = sim::make_ops<RecordedMachine, sim::D8>();
-    std::get<sim::Ops<sim::P8>>(e.ops) = sim::make_ops<RecordedMachine, sim::P8>();
-    return e;
-  }();
+  static const sim::Effect effect = sim::make_effect<RecordedMachine>();
   return effect;
 }
 
@@ -201,35 +185,13 @@ std::vector<std::vector<std::string>> needed_columns(const sim::plant::PlantUnde
   return all;
 }
 
-const std::vector<double>& measured_values(const record::Record& record, Output output) {
-  switch (output) {
-    case Output::P:
-      return record.P;
-    case Output::Q:
-      return record.Q;
-    case Output::speed:
-      return record.speed;
-    case Output::Efd:
-      return record.Efd;
-    case Output::Pm:
-      return record.Pm;
-    case Output::gate:
-      return record.gate;
-    case Output::V:
-      return record.V;
-    case Output::Ifd:
-      break;
-  }
-  return record.Ifd;
-}
-
 std::vector<Output> compared_outputs(const record::Record& record, bool measured_states) {
   std::vector<Output> all;
   if (record.breaker()) {
     all = {Output::V};
     if (measured_states) all.insert(all.end(), {Output::speed, Output::Ifd});
     if (measured_states && record.component == Component::plant) all.push_back(Output::Efd);
-    std::erase_if(all, [&](Output o) { return measured_values(record, o).empty(); });
+    std::erase_if(all, [&](Output o) { return output_of(record, o).empty(); });
     return all;
   }
   switch (record.component) {
@@ -247,7 +209,7 @@ std::vector<Output> compared_outputs(const record::Record& record, bool measured
       if (measured_states) all.insert(all.end(), {Output::speed, Output::Ifd});
       break;
   }
-  std::erase_if(all, [&](Output o) { return measured_values(record, o).empty(); });
+  std::erase_if(all, [&](Output o) { return output_of(record, o).empty(); });
   return all;
 }
 

@@ -36,7 +36,4 @@ std::vector<std::vector<std::string>> needed_columns(const sim::plant::PlantUnde
 /// speed, Efd and Ifd, if they are not inputs.
 std::vector<Output> compared_outputs(const record::Record& record, bool measured_states);
 
-/// Returns the record's values of an output.
-const std::vector<double>& measured_values(const record::Record& record, Output output);
-
 }  // namespace swingbank::validate::playin

@@ -40,6 +40,29 @@ enum class Output { P, Q, speed, Efd, Ifd, Pm, gate, V };
 constexpr int kOutputs = 8;  ///< number of outputs
 /// Returns the name of an output, "Pm".
 std::string_view output_name(Output output);
+/// Returns an output's values in a record or in a Playback; empty if it was not recorded or not computed.
+template <class Channels>
+auto& output_of(Channels& channels, Output output) {
+  switch (output) {
+    case Output::P:
+      return channels.P;
+    case Output::Q:
+      return channels.Q;
+    case Output::speed:
+      return channels.speed;
+    case Output::Efd:
+      return channels.Efd;
+    case Output::Pm:
+      return channels.Pm;
+    case Output::gate:
+      return channels.gate;
+    case Output::V:
+      return channels.V;
+    case Output::Ifd:
+      break;
+  }
+  return channels.Ifd;
+}
 
 class Given;
 class TrajectoryCache;

@@ -136,38 +136,8 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
   return point;
 }
 
-const std::vector<double>& output_of(const Playback& p, Output o) {
-  switch (o) {
-    case Output::P:
-      return p.P;
-    case Output::Q:
-      return p.Q;
-    case Output::speed:
-      return p.speed;
-    case Output::Efd:
-      return p.Efd;
-    case Output::Pm:
-      return p.Pm;
-    case Output::gate:
-      return p.gate;
-    case Output::V:
-      return p.V;
-    case Output::Ifd:
-      break;
-  }
-  return p.Ifd;
-}
-
 void take_outputs(Response& response, Playback& back) {
-  const auto take = [&](Output o) { return std::move(response.value[static_cast<int>(o)]); };
-  back.P = take(Output::P);
-  back.Q = take(Output::Q);
-  back.speed = take(Output::speed);
-  back.Efd = take(Output::Efd);
-  back.Ifd = take(Output::Ifd);
-  back.Pm = take(Output::Pm);
-  back.gate = take(Output::gate);
-  back.V = take(Output::V);
+  for (int o = 0; o < kOutputs; ++o) output_of(back, static_cast<Output>(o)) = std::move(response.value[o]);
   back.steps = response.steps;
 }
 

@@ -34,9 +34,6 @@ struct Playback {
   int steps = 0;              ///< number of integration steps
 };
 
-/// Returns an output of a playback; empty if it was not computed.
-const std::vector<double>& output_of(const Playback& playback, Output output);
-
 /// Moves a response's outputs into a playback.
 void take_outputs(Response& response, Playback& back);
 

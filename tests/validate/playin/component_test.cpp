@@ -34,7 +34,7 @@ double worst(const Case& c, record::Record r, Output output) {
                          : output == Output::P  ? back.P
                          : output == Output::Q  ? back.Q
                                                 : back.Ifd;
-  const auto& measured = measured_values(r, output);
+  const auto& measured = output_of(r, output);
   double error = 0, moved = 0;
   for (std::size_t k = 0; k < response.size(); ++k) {
     error = std::max(error, std::abs(response[k] - measured[k]));

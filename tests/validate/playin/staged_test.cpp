@@ -28,7 +28,7 @@ StagedError staged_error(const sim::plant::PlantUnderTest& tested, const record:
   const std::vector<double>* responses[kOutputs] = {&back.P,   &back.Q,  &back.speed, &back.Efd,
                                                     &back.Ifd, &back.Pm, &back.gate,  &back.V};
   const auto& response = *responses[static_cast<int>(output)];
-  const auto& measured = measured_values(r, output);
+  const auto& measured = output_of(r, output);
   StagedError e;
   for (std::size_t k = 0; k < response.size(); ++k) {
     e.error = std::max(e.error, std::abs(response[k] - measured[k]));
