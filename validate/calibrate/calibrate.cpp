@@ -84,7 +84,7 @@ class Calibrating {
     }
     after_ = each_alone(c_.fit.plant, event::Phase::fitted_model);
     c_.model.plant = c_.fit.plant;
-    for (const auto& f : after_) c_.states.push_back(f.state);
+    c_.states = states_of(after_);
     learn();
     judge();
   }
@@ -254,8 +254,7 @@ class Calibrating {
   /// the scores equal their expectation under that noise.
   void undo_voltage_noise() {
     const std::vector<double> fitted = fit::values_of(c_.fit.plant, free_);
-    states_.clear();
-    for (const auto& e : c_.fit.events) states_.push_back(e.state);
+    states_ = states_of(c_.fit.events);
     c_.voltage_noise = noise_.share;
     Secants secants(static_cast<Eigen::Index>(free_.size()));
     double nearest = std::numeric_limits<double>::infinity();

@@ -362,8 +362,7 @@ void correct_noise_transfer(const noise::NoiseTransfer* noise_transfer, const si
 
 FitOptions continued(FitOptions o, const Fit& f, const std::vector<FreeParameter>& free) {
   o.values = values_of(f.plant, free);
-  o.start.clear();
-  for (const auto& e : f.events) o.start.push_back(e.state);
+  o.start = states_of(f.events);
   return o;
 }
 

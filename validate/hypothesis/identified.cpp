@@ -67,8 +67,7 @@ class Identifying {
   /// the inputs are inferred.
   void begin() {
     if (base_model_.fit.reduced_chi2() >= thresholds::noise.measurable) return infer();
-    std::vector<event::EventState> states;
-    for (const auto& e : base_model_.fit.events) states.push_back(e.state);
+    const std::vector<event::EventState> states = states_of(base_model_.fit.events);
     for (const InputKind kind : {InputKind::torque, InputKind::field}) {
       if (!(free_input(kind)->evidence > kStrongEvidence)) continue;
       const auto side = std::make_shared<const reduced::Reduction>(

@@ -68,7 +68,7 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   const auto free = free_of(j.hypothesis, trial.prior_sd);
   fit::FitOptions o{.iterations = kMostSteps, .lenient = true};
   o.values = fit::values_of(j.fit.plant, free);
-  for (const auto& e : j.fit.events) o.start.push_back(e.state);
+  o.start = states_of(j.fit.events);
   if (fit::Fit f = fit::fit(j.hypothesis.under_test(), trial.events, free, o);
       f.failed.empty() && fit::gain(j.fit, f) > -thresholds::evidence.same_fit)
     j.fit = std::move(f);

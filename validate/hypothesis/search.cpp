@@ -59,9 +59,7 @@ class WholeFits {
       } catch (const InputError&) {  // the submitted values cannot be simulated
       }
     }
-    std::vector<fit::EventState> fitted;
-    for (const auto& e : base_model.fit.events) fitted.push_back(e.state);
-    linearise(base_model.fit.plant, fitted);
+    linearise(base_model.fit.plant, states_of(base_model.fit.events));
   }
 
   std::vector<Judgement> run(std::vector<Hypothesis> all) {
@@ -92,9 +90,7 @@ class WholeFits {
     goal = this->goal(candidates);
     each(candidates, first() ? event::Phase::full_fits : event::Phase::second_full_fits, [&](Candidate& c) {
       const fit::Fit& from = *std::ranges::min_element(c.fits, fit::better);
-      std::vector<fit::EventState> states;
-      for (const auto& e : from.events) states.push_back(e.state);
-      keep(c, attempt(c, fit::values_of(from.plant, c.free), states,
+      keep(c, attempt(c, fit::values_of(from.plant, c.free), states_of(from.events),
                       {.iterations = kLastSteps, .lenient = true, .goal = {goal, kLastSteps}}));
     });
     for (Candidate& c : candidates) {
@@ -259,8 +255,7 @@ std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesi
 
 void fit_alone(const BaseModel& base_model, Judgement& j) {
   const auto free = free_of(j.hypothesis, base_model.prior_sd);
-  fit::FitOptions o{.lenient = true};
-  for (const auto& e : base_model.fit.events) o.start.push_back(e.state);
+  const fit::FitOptions o{.lenient = true, .start = states_of(base_model.fit.events)};
   j.fit = fit_at(base_model, j.hypothesis.under_test(), free, o);
   j.fitted = j.fit.failed.empty();
   if (j.fitted) j.gain = fit::gain(base_model.fit, j.fit, fit::criterion);
@@ -275,7 +270,7 @@ fit::Fit fit_from(const BaseModel& base_model, const Hypothesis& h, const fit::F
     o.values.push_back(id ? sim::plant::parameter_value(other.plant, *id)
                           : sim::plant::parameter_value(start, f.id));
   }
-  for (const auto& e : other.events) o.start.push_back(e.state);
+  o.start = states_of(other.events);
   return fit::fit(h.under_test(), base_model.events, free, o);
 }
 

@@ -2,6 +2,12 @@
 
 namespace swingbank::validate::noise {
 
+std::vector<event::EventState> states_of(const std::vector<EventFit>& events) {
+  std::vector<event::EventState> states;
+  for (const EventFit& e : events) states.push_back(e.state);
+  return states;
+}
+
 void compare(const WhitenedEvents& events, std::size_t which, const playin::Response& response, EventFit& f) {
   const event::FitEvent& event = events[which];
   f.model.clear();

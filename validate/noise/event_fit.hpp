@@ -20,6 +20,9 @@ struct EventFit {
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
 };
 
+/// Returns the states of the events.
+std::vector<event::EventState> states_of(const std::vector<EventFit>& events);
+
 /// Fills `fit`, except its state, with the comparison of `response` with one event.
 void compare(const WhitenedEvents& events, std::size_t event, const playin::Response& response,
              EventFit& fit);

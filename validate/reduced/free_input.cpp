@@ -15,8 +15,7 @@ FreeInput free_input(event::InputKind kind, const sim::plant::PlantUnderTest& te
                      const fit::Fit& without, int threads) {
   FreeInput input;
   input.kind = kind;
-  std::vector<event::EventState> states;
-  for (const auto& e : without.events) states.push_back(e.state);
+  const std::vector<event::EventState> states = states_of(without.events);
   const bool near = without.reduced_chi2() < thresholds::noise.measurable;
   const bool torque = kind == event::InputKind::torque;
   try {

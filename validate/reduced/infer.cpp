@@ -404,9 +404,8 @@ SmoothInference infer_smooth(const sim::plant::PlantUnderTest& tested, const noi
                              const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
                              const fit::Fit* from) {
   Inferring inferring(tested, events, free, inputs, threads);
-  std::vector<event::EventState> states;
-  for (std::size_t e = 0; from && e < events.size(); ++e) states.push_back(from->events[e].state);
-  inferring.begin(from ? from->plant : tested.plant, states);
+  inferring.begin(from ? from->plant : tested.plant,
+                  from ? states_of(from->events) : std::vector<event::EventState>());
   SmoothInference found{inferring.run(from ? 0 : kInferenceSteps), {}};
   found.smooth = inferring.smoothed(found.prior, from ? kAnyIntensity : kNearIntensity);
   return found;

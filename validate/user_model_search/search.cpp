@@ -137,7 +137,7 @@ class Searcher {
     fit::FitOptions o;
     o.iterations = 10;
     o.values = values_in(input_.fit.plant, {f.effect.get(), h.starts.front()}, block, free);
-    for (const auto& e : input_.fit.events) o.start.push_back(e.state);
+    o.start = states_of(input_.fit.events);
     fit::Fit found = fit::fit(h.under_test(), case_.trial.events, free, o);
     if (!found.failed.empty()) return f;
     f.judgement.fit = std::move(found);

@@ -53,7 +53,7 @@ TEST_F(IdentifiedExciter, ReachesTheOptimumFoundFromTheTruth) {
   // Fit at the parameter values of the plant that made the records.
   const auto free = free_of(best.hypothesis, base_model_.prior_sd);
   fit::FitOptions truth{.iterations = 20, .lenient = true};
-  for (const auto& e : best.fit.events) truth.start.push_back(e.state);
+  truth.start = states_of(best.fit.events);
   truth.values = fit::values_of(best.hypothesis.plant, free);
   const fit::Fit there = fit::fit({best.hypothesis.plant, best.hypothesis.conventions}, events_, free, truth);
   EXPECT_LT(fit::penalised(best.fit), fit::penalised(there) + 5);

@@ -196,8 +196,7 @@ TEST_F(Reduced, ClosedLoopFindsWhatAFitFinds) {
   parameter_value(wrong.plant, moved.id) *= 1.05;
   const fit::Fit base = fit::fit(wrong.under_test(), *events_, others, {});
   ASSERT_TRUE(base.failed.empty());
-  std::vector<event::EventState> states;
-  for (const auto& e : base.events) states.push_back(e.state);
+  const std::vector<event::EventState> states = states_of(base.events);
   const ClosedLoop plant(linear_about(base.plant, wrong.under_test(), *events_, others, states, {}, 1),
                          *events_);
   const ClosedLoopCost cost(plant, model_->conventions, {});
@@ -238,8 +237,7 @@ TEST_F(Reduced, OptimaOfALimiterAct) {
   const auto& limiter = *std::ranges::find(all, "MAXEX2", &hypothesis::Hypothesis::name);
   const auto free = fit::free_parameters(with_exciter.plant, 0.3);
   const fit::Fit fitted = fit::fit(with_exciter, *events_, free, {});
-  std::vector<event::EventState> states;
-  for (const auto& e : fitted.events) states.push_back(e.state);
+  const std::vector<event::EventState> states = states_of(fitted.events);
   const Reduction about(linear_about(fitted.plant, with_exciter, *events_, free, states, {.field = true}, 1),
                         *events_, model_->conventions);
   const auto found = identify(about, event::InputKind::field, {limiter.plant, limiter.free, 1});

@@ -64,8 +64,7 @@ std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
 fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
   constexpr std::array kMultiples = {0.3, 0.5, 0.7, 0.85, 1.2, 1.4, 2.0, 3.3};
   const auto free = fit::free_parameters(base_model.plant, base_model.prior_sd);
-  std::vector<fit::EventState> states;
-  for (const auto& e : base_model.fit.events) states.push_back(e.state);
+  const std::vector<fit::EventState> states = states_of(base_model.fit.events);
   std::vector<sim::plant::Plant> plants;
   for (const fit::FreeParameter& f : free)
     for (const double multiple : kMultiples) {
