@@ -108,13 +108,11 @@ void free_about_values(Hypothesis& h, std::vector<fit::FreeParameter> free) {
 
 /// Returns the hypothesis of an effect in a free slot.
 Hypothesis added_to(const sim::plant::PlantUnderTest& tested, const sim::Effect& effect) {
-  Hypothesis h;
+  Hypothesis h = unchanged(tested);
   h.name = effect.name;
   h.what = fmt::format("{} {} ({})", sim::slot_name(effect.slot), effect.name, effect.title);
   h.side = side_of(effect.slot);
   if (!sim::is_shared(effect.slot)) h.slot = static_cast<int>(effect.slot);
-  h.plant = tested.plant;
-  h.conventions = tested.conventions;
   const int block = sim::plant::insert_block(h.plant, {&effect, effect.default_parameters()});
   if (effect.slot == Slot::measurement) {
     start_near_null(h, block);
@@ -183,7 +181,7 @@ std::vector<Hypothesis> null_groups(const sim::plant::PlantUnderTest& tested, in
       groups.push_back({static_cast<int>(i)});
   }
   for (const auto& group : groups) {
-    Hypothesis h;
+    Hypothesis h = unchanged(tested);
     std::string names, meanings;
     for (const int i : group) {
       const auto& p = effect.parameters[static_cast<std::size_t>(i)];
@@ -193,8 +191,6 @@ std::vector<Hypothesis> null_groups(const sim::plant::PlantUnderTest& tested, in
     h.name = fmt::format("{}:{}", effect.name, names);
     h.what = fmt::format("{} of {} ({})", names, effect.name, meanings);
     h.side = side_of(effect.slot);
-    h.plant = tested.plant;
-    h.conventions = tested.conventions;
     const bool band = is_band(effect, group);
     for (const double share : band ? kBandStarts : kCurveStarts) {
       std::vector<double> values;
@@ -230,14 +226,12 @@ void add_switches(const sim::plant::PlantUnderTest& tested, std::vector<Hypothes
     for (std::size_t i = 0; i < block.p.size(); ++i) {
       const auto& p = block.effect->parameters[i];
       if (!p.is_code() || p.low != 0.0 || p.high != 1.0 || (block.p[i] != 0.0 && block.p[i] != 1.0)) continue;
-      Hypothesis h;
+      Hypothesis h = unchanged(tested);
       const double other = 1.0 - block.p[i];
       h.name = fmt::format("{}:{}={:g}", block.effect->name, p.name, other);
       h.what = fmt::format("{} of {} is {:g}, not {:g} ({})", p.name, block.effect->name, other, block.p[i],
                            p.meaning);
       h.side = side_of(block.effect->slot);
-      h.plant = tested.plant;
-      h.conventions = tested.conventions;
       sim::plant::parameter_value(h.plant, {b, static_cast<int>(i)}) = other;
       h.starts = {{}};
       if (playin::can_run(sim::plant::block_at(h.plant, b))) all.push_back(std::move(h));
@@ -246,11 +240,9 @@ void add_switches(const sim::plant::PlantUnderTest& tested, std::vector<Hypothes
 }
 
 void add_conventions(const sim::plant::PlantUnderTest& tested, std::vector<Hypothesis>& all) {
-  Hypothesis h;
+  Hypothesis h = unchanged(tested);
   h.name = "speed-voltage";
   h.side = Side::machine;
-  h.plant = tested.plant;
-  h.conventions = tested.conventions;
   h.conventions.speed_voltage = !tested.conventions.speed_voltage;
   h.what = fmt::format("stator voltage equations with{} the speed term (E″ = (1 + ω) ψ″)",
                        h.conventions.speed_voltage ? "" : "out");
@@ -364,6 +356,13 @@ std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Pla
 }
 
 std::string full_name(const Hypothesis& h) { return h.with.empty() ? h.name : h.with + " + " + h.name; }
+
+Hypothesis unchanged(const sim::plant::PlantUnderTest& tested) {
+  Hypothesis h;
+  h.plant = tested.plant;
+  h.conventions = tested.conventions;
+  return h;
+}
 
 sim::plant::Plant started(const Hypothesis& h, const std::vector<double>& start) {
   return fit::with_values(h.plant, h.free, start);

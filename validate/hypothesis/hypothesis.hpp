@@ -63,6 +63,8 @@ std::vector<Hypothesis> all_replacements(const sim::plant::PlantUnderTest& teste
 std::vector<Hypothesis> with_left_off(const Hypothesis& h, const sim::plant::Plant& fitted);
 /// Returns the name of the hypothesis with that of the effect added before: "SEXS + GENROU:Ra".
 std::string full_name(const Hypothesis& h);
+/// Returns the plant as a hypothesis without a change and without free parameters.
+Hypothesis unchanged(const sim::plant::PlantUnderTest& tested);
 /// Returns the hypothesis's plant with `start` as values of its free parameters.
 sim::plant::Plant started(const Hypothesis& h, const std::vector<double>& start);
 

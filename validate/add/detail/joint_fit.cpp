@@ -22,14 +22,6 @@ std::string plain(const std::string& name) {
   return out;
 }
 
-/// Returns the given model as a hypothesis without free parameters of its own.
-hypothesis::Hypothesis nothing_added(const hypothesis::BaseModel& base_model) {
-  hypothesis::Hypothesis none;
-  none.plant = base_model.plant;
-  none.conventions = base_model.conventions;
-  return none;
-}
-
 }  // namespace
 
 std::optional<hypothesis::Hypothesis> named_hypothesis(const sim::plant::PlantUnderTest& tested,
@@ -64,7 +56,7 @@ JointFit::JointFit(const plant::PlantModel& model, const std::vector<std::string
 
 bool JointFit::run() {
   search();
-  a_.without = from_other(nothing_added(base_model_), a_.without, a_.with);
+  a_.without = from_other(hypothesis::unchanged(base_model_.under_test()), a_.without, a_.with);
   leave_out();
   bool measured = measure_noise();
   while (add_null_group()) measured |= measure_noise();
@@ -129,7 +121,7 @@ bool JointFit::measure_noise() {
   const auto repeat = [&](const hypothesis::Hypothesis& h, fit::Fit& f) {
     f = bench_.go_on(h.under_test(), hypothesis::free_of(h, base_model_.prior_sd), f);
   };
-  repeat(nothing_added(base_model_), a_.without);
+  repeat(hypothesis::unchanged(base_model_.under_test()), a_.without);
   repeat(a_.hypothesis, a_.with);
   for (LeftOut& l : left_out_) repeat(l.others, l.fit);
   return true;
@@ -195,7 +187,7 @@ std::vector<hypothesis::Hypothesis> JointFit::addable(const sim::plant::PlantUnd
 /// absent effect are left out.
 hypothesis::Hypothesis JointFit::together(std::vector<std::string> names) const {
   hypothesis::Judgement all;
-  all.hypothesis = nothing_added(base_model_);
+  all.hypothesis = hypothesis::unchanged(base_model_.under_test());
   for (auto next = addable(all.hypothesis.under_test(), names); !next.empty();
        next = addable(all.hypothesis.under_test(), names)) {
     all.fit.plant = all.hypothesis.plant;

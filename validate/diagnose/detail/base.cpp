@@ -25,18 +25,10 @@ bool unfinished(const fit::Fit& f) {
   return f.failed.empty() && !f.converged && f.reduced_chi2() < thresholds::noise.believed;
 }
 
-/// Returns the given model as a hypothesis without free parameters of its own.
-hypothesis::Hypothesis alone(const hypothesis::BaseModel& base_model) {
-  hypothesis::Hypothesis h;
-  h.plant = base_model.plant;
-  h.conventions = base_model.conventions;
-  return h;
-}
-
 fit::Fit from_extensions(const hypothesis::BaseModel& base_model,
                          const std::vector<hypothesis::Judgement>& ranked) {
   hypothesis::Judgement base;
-  base.hypothesis = alone(base_model);
+  base.hypothesis = hypothesis::unchanged(base_model.under_test());
   base.fit = base_model.fit;
   for (std::size_t k = 0; k < std::min(kWaysOut, ranked.size()); ++k)
     if (ranked[k].fitted) hypothesis::try_from(base_model, ranked[k].fit, base);
