@@ -90,7 +90,7 @@ SlowNoise slow_noise(const playin::LinearPlant& plant, WhitenedEvent whitened, c
 std::shared_ptr<const Innovations> memory_of(const sim::plant::PlantUnderTest& tested, WhitenedEvent whitened,
                                              const VoltageNoise& voltage) {
   const event::FitEvent& e = whitened.event;
-  const playin::VoltageCurve curve(e.played(), e.switchings);
+  const playin::VoltageCurve curve = e.curve(e.switchings);
   const playin::PlaybackRun at{.plant = &tested.plant,
                                .conventions = tested.conventions,
                                .record = &e.record,

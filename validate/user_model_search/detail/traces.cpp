@@ -41,7 +41,7 @@ std::vector<UserModelTrace> user_model_traces(const plant::PlantModel& model,
     const event::FitEvent& e = events[i];
     const fit::EventState& state = input.fit.events[i].state;
     const auto switchings = event::switchings_at(e, state);
-    const playin::VoltageCurve curve(e.played(), switchings);
+    const playin::VoltageCurve curve = e.curve(switchings);
     // The signals are those of the instruments, as in the fit.
     const playin::Response r = play_event({input.fit.plant, model.conventions}, e, state);
     const double to_machine = e.record.base.mva / input.fit.plant.mva;
