@@ -427,15 +427,10 @@ class Diagnoser {
   /// Applies `act` to each judgement, in parallel.
   template <class F>
   void each(std::span<hypothesis::Judgement> tried, event::Phase phase, F act) const {
-    in_parallel(
-        tried.size(),
-        [&](std::size_t k) {
-          if (!stopped()) until_interrupted([&] { act(tried[k]); });
-        },
-        [&](int done, std::size_t k) {
-          report(phase, hypothesis::full_name(tried[k].hypothesis), done, static_cast<int>(tried.size()));
-        },
-        threads_);
+    hypothesis::for_each(
+        present_model(), options_.progress, phase, tried.size(),
+        [&](std::size_t k) { return hypothesis::full_name(tried[k].hypothesis); },
+        [&](std::size_t k) { act(tried[k]); });
   }
 
   [[nodiscard]] hypothesis::Trial trial() const {

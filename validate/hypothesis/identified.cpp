@@ -6,7 +6,6 @@
 #include <array>
 
 #include "base/in_parallel.hpp"
-#include "base/stop_signal.hpp"
 #include "validate/hypothesis/companions.hpp"
 #include "validate/hypothesis/polish.hpp"
 
@@ -104,7 +103,9 @@ class Identifying {
                          : std::make_shared<const reduced::Inference>(reduced::infer(
                                base_model_.under_test(), base_model_.events, polish_.free(), kInputs[i], 1));
         },
-        [&](int done) { report_progress(event::Phase::missing_input, "", done, kInputs.size()); },
+        [&](int done) {
+          if (report_) report_(event::Phase::missing_input, "", done, kInputs.size());
+        },
         base_model_.threads);
     if (found[2]->criterion < std::min(found[0]->criterion, found[1]->criterion)) return reduce(*found[2]);
     // The better input is used. The other input is used too if its reduction of chi2 is at most
@@ -131,20 +132,12 @@ class Identifying {
   }
   void identify(const reduced::IdentifyOptions& options = {}) {
     const double reach = highest_cost();
-    in_parallel(
-        tried_.size(),
-        [&](std::size_t i) {
-          if (!base_model_.stopped())
-            until_interrupted([&] {
-              if (!(tried_[i].cost > reach)) identify(tried_[i], options);
-            });
-        },
-        [&](int done, std::size_t i) {
-          report_progress(
-              base_model_.with.empty() ? event::Phase::quick_fits : event::Phase::second_quick_fits,
-              tried_[i].hypothesis.name, done, tried_.size());
-        },
-        base_model_.threads);
+    std::vector<Identified*> all;
+    for (Identified& h : tried_) all.push_back(&h);
+    each(all, base_model_.with.empty() ? event::Phase::quick_fits : event::Phase::second_quick_fits,
+         [&](Identified& h) {
+           if (!(h.cost > reach)) identify(h, options);
+         });
   }
   /// Returns the cost above which a hypothesis cannot become the best; infinite before the first
   /// identification. The linearisation about another block predicts the gain of a block with many parameters
@@ -296,18 +289,9 @@ class Identifying {
   }
   template <class F>
   void each(const std::vector<Identified*>& some, event::Phase phase, F act) const {
-    in_parallel(
-        some.size(),
-        [&](std::size_t k) {
-          if (!base_model_.stopped()) until_interrupted([&] { act(*some[k]); });
-        },
-        [&](int done, std::size_t k) { report_progress(phase, some[k]->hypothesis.name, done, some.size()); },
-        base_model_.threads);
-  }
-  void report_progress(event::Phase phase, const std::string& item, int done, std::size_t total) const {
-    if (report_)
-      report_(phase, item.empty() || base_model_.with.empty() ? item : item + " with " + base_model_.with,
-              done, static_cast<int>(total));
+    for_each(
+        base_model_, report_, phase, some.size(), [&](std::size_t k) { return some[k]->hypothesis.name; },
+        [&](std::size_t k) { act(*some[k]); });
   }
 
   const BaseModel& base_model_;

@@ -169,18 +169,10 @@ class WholeFits {
   }
   template <class F>
   void each(std::vector<Candidate>& candidates, event::Phase phase, F act) const {
-    in_parallel(
-        candidates.size(),
-        [&](std::size_t i) {
-          if (!base_model_.stopped()) until_interrupted([&] { act(candidates[i]); });
-        },
-        [&](int done, std::size_t i) {
-          if (!report_) return;
-          const std::string& name = candidates[i].hypothesis.name;
-          report_(phase, first() ? name : name + " with " + base_model_.with, done,
-                  static_cast<int>(candidates.size()));
-        },
-        base_model_.threads);
+    for_each(
+        base_model_, report_, phase, candidates.size(),
+        [&](std::size_t k) { return candidates[k].hypothesis.name; },
+        [&](std::size_t k) { act(candidates[k]); });
   }
   /// Returns whether the base model is the given model.
   [[nodiscard]] bool first() const { return base_model_.with.empty(); }
@@ -192,6 +184,22 @@ class WholeFits {
 };
 
 }  // namespace
+
+void for_each(const BaseModel& base_model, const event::Progress& report, event::Phase phase, std::size_t n,
+              const std::function<std::string(std::size_t)>& name,
+              const std::function<void(std::size_t)>& act) {
+  in_parallel(
+      n,
+      [&](std::size_t k) {
+        if (!base_model.stopped()) until_interrupted([&] { act(k); });
+      },
+      [&](int done, std::size_t k) {
+        if (!report) return;
+        report(phase, base_model.with.empty() ? name(k) : name(k) + " with " + base_model.with, done,
+               static_cast<int>(n));
+      },
+      base_model.threads);
+}
 
 fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& tested,
                 const std::vector<fit::FreeParameter>& free, const fit::FitOptions& options) {
