@@ -7,12 +7,6 @@
 #include <limits>
 
 namespace swingbank::validate::hypothesis {
-namespace {
-
-/// Maximum number of steps of the final fit.
-constexpr int kMostSteps = 60;
-
-}  // namespace
 
 std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double prior_sd) {
   std::vector<fit::FreeParameter> free;
@@ -66,10 +60,8 @@ void judge(const Trial& trial, const fit::Fit& base, const std::vector<HeldOut>&
   if (!j.fitted) return;
   j.why_not.clear();
   const auto free = free_of(j.hypothesis, trial.prior_sd);
-  fit::FitOptions o{.iterations = kMostSteps, .lenient = true};
-  o.values = fit::values_of(j.fit.plant, free);
-  o.start = states_of(j.fit.events);
-  if (fit::Fit f = fit::fit(j.hypothesis.under_test(), trial.events, free, o);
+  if (fit::Fit f = fit::fit(j.hypothesis.under_test(), trial.events, free,
+                            fit::continued({.lenient = true}, j.fit, free));
       f.failed.empty() && fit::gain(j.fit, f) > -thresholds::evidence.same_fit)
     j.fit = std::move(f);
   fit::correct_noise_transfer(trial.noise_transfer, j.hypothesis.conventions, j.fit);
