@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
 
 #include "sim/library/variants.hpp"
-#include "sim/plant/usual.hpp"
 #include "validate/fit/draws.hpp"
 #include "validate/playin/can_run.hpp"
 #include "validate/playin/component.hpp"

@@ -34,8 +34,7 @@ class Identifying {
 
   std::vector<Judgement> run(std::vector<Hypothesis> all, const std::function<double(double)>& fit_others) {
     for (Hypothesis& h : all) {
-      reduced::Trial trial{prior_mean(base_model_, h), h.free, stream_of(full_name(h)), length(base_model_),
-                           h.starts};
+      reduced::Trial trial = trial_of(base_model_, h);
       tried_.push_back({std::move(h), std::move(trial)});
     }
     begin();
@@ -249,6 +248,7 @@ class Identifying {
       if (h.best() && (!leader || h.cost < leader->cost)) leader = &h;
     for (const Identified& h : tried_) {
       const bool other_side = !side_of(h);
+      const char* input = h.input() == InputKind::torque ? "torque" : "field voltage";
       if (!std::isfinite(h.cost) && !other_side) continue;
       Judgement j;
       j.hypothesis = h.hypothesis;
@@ -257,17 +257,14 @@ class Identifying {
       j.companion = h.companion;
       j.companion_gain = h.companion_gain;
       if (const fit::Fit* f = h.best()) {
-        std::optional<fit::Fit> known;
-        if (!std::isfinite(fit::criterion(*f))) known = with_errors(base_model_, j.hypothesis, *f);
-        j.fit = known ? *known : *f;
+        j.fit = std::isfinite(fit::criterion(*f)) ? *f : with_errors(base_model_, j.hypothesis, *f);
         j.gain = fit::gain(base_model_.fit, j.fit,
                            std::isfinite(fit::criterion(j.fit)) ? fit::criterion : fit::penalised);
       } else {
         j.fit = base_model_.fit;
         j.fitted = false;
         if (other_side) {
-          j.why_not = fmt::format("not fitted: even an arbitrary {} reduces the residual too little",
-                                  h.input() == InputKind::torque ? "torque" : "field voltage");
+          j.why_not = fmt::format("not fitted: even an arbitrary {} reduces the residual too little", input);
         } else if (leader && h.cost <= leader->cost) {
           j.why_not = "not fitted: the whole plant cannot be simulated with its preliminary fit";
         } else if (leader) {
@@ -275,7 +272,7 @@ class Identifying {
           j.why_not = fmt::format(
               "not fitted: the chi-square of its preliminary fit to the inferred {} is higher by {:.0f} "
               "than that of {}",
-              h.input() == InputKind::torque ? "torque" : "field voltage", j.behind, leader->hypothesis.name);
+              input, j.behind, leader->hypothesis.name);
         } else {
           j.gain = none_ - h.cost;
           j.why_not = too_small(j.gain);

@@ -8,7 +8,6 @@
 
 #include "validate/fit/axis.hpp"
 #include "validate/hypothesis/search.hpp"
-#include "validate/reduced/identify.hpp"
 
 namespace swingbank::validate::hypothesis {
 

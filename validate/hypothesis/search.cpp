@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
-#include <optional>
 
 #include "base/in_parallel.hpp"
 #include "base/stop_signal.hpp"
@@ -14,7 +12,6 @@
 #include "validate/hypothesis/identified.hpp"
 #include "validate/hypothesis/posterior.hpp"
 #include "validate/reduced/closed_loop.hpp"
-#include "validate/reduced/identify.hpp"
 
 namespace swingbank::validate::hypothesis {
 namespace {
@@ -79,19 +76,20 @@ class WholeFits {
     double goal = this->goal(candidates);
     each(candidates, screening, [&](Candidate& c) {
       for (const Start& start : c.starts)
-        keep(c, attempt(c, start.values, *start.states,
-                        {.iterations = kFirstSteps,
-                         .lenient = true,
-                         .brief = true,
-                         .errors = false,
-                         .goal = {goal, 2 * kFirstSteps}}));
+        attempt(c, {.iterations = kFirstSteps,
+                    .lenient = true,
+                    .brief = true,
+                    .start = *start.states,
+                    .values = start.values,
+                    .errors = false,
+                    .goal = {goal, 2 * kFirstSteps}});
     });
     std::erase_if(candidates, [](const Candidate& c) { return c.fits.empty(); });
     goal = this->goal(candidates);
     each(candidates, first() ? event::Phase::full_fits : event::Phase::second_full_fits, [&](Candidate& c) {
       const fit::Fit& from = *std::ranges::min_element(c.fits, fit::better);
-      keep(c, attempt(c, fit::values_of(from.plant, c.free), states_of(from.events),
-                      {.iterations = kLastSteps, .lenient = true, .goal = {goal, kLastSteps}}));
+      attempt(c, fit::continued({.iterations = kLastSteps, .lenient = true, .goal = {goal, kLastSteps}}, from,
+                                c.free));
     });
     for (Candidate& c : candidates) {
       Judgement j;
@@ -114,8 +112,7 @@ class WholeFits {
   }
   void find_starts(Candidate& c) const {
     Hypothesis& h = c.hypothesis;
-    reduced::Trial trial{prior_mean(base_model_, h), h.free, stream_of(full_name(h)), length(base_model_),
-                         h.starts};
+    reduced::Trial trial = trial_of(base_model_, h);
     std::ranges::copy(h.further, std::back_inserter(trial.starts));
     bring(base_model_, h);
     c.prior = prior_mean(base_model_, h);
@@ -145,13 +142,8 @@ class WholeFits {
     j.why_not = too_small(j.gain);
     return j;
   }
-  [[nodiscard]] fit::Fit attempt(const Candidate& c, const std::vector<double>& values,
-                                 const std::vector<fit::EventState>& states, fit::FitOptions options) const {
-    options.values = values;
-    options.start = states;
-    return fit_at(base_model_, {c.prior, c.hypothesis.conventions}, c.free, options);
-  }
-  static void keep(Candidate& c, fit::Fit f) {
+  void attempt(Candidate& c, const fit::FitOptions& options) const {
+    fit::Fit f = fit_at(base_model_, {c.prior, c.hypothesis.conventions}, c.free, options);
     if (f.failed.empty()) c.fits.push_back(std::move(f));
   }
   /// Returns the cost that a fit must be able to reach: near that of the best fit, and low enough for half of
@@ -225,15 +217,11 @@ std::vector<fit::FreeParameter> free_with_own(const BaseModel& base_model) {
   return free;
 }
 
-std::uint64_t stream_of(const std::string& name) {  // FNV-1a
-  std::uint64_t sum = 14695981039346656037u;
-  for (const char c : name) sum = (sum ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return sum;
-}
-
-double length(const BaseModel& base_model) {
+reduced::Trial trial_of(const BaseModel& base_model, const Hypothesis& h) {
+  std::uint64_t stream = 14695981039346656037u;  // FNV-1a hash of the name
+  for (const char c : full_name(h)) stream = (stream ^ static_cast<unsigned char>(c)) * 1099511628211u;
   const auto& t = base_model.events.front().record.t;
-  return t.back() - t.front();
+  return {prior_mean(base_model, h), h.free, stream, t.back() - t.front(), h.starts};
 }
 
 bool cannot_be_accepted(const BaseModel& base_model, double predicted, double none) {
@@ -253,12 +241,11 @@ sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h) {
   return plant;
 }
 
-std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& f) {
+fit::Fit with_errors(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& f) {
   const auto free = free_of(h, base_model.prior_sd);
   fit::Fit known = fit::fit(h.under_test(), base_model.events, free,
                             fit::continued({.iterations = 0, .lenient = true}, f, free));
-  if (!known.failed.empty()) return std::nullopt;
-  return known;
+  return known.failed.empty() ? known : f;
 }
 
 void fit_alone(const BaseModel& base_model, Judgement& j) {

@@ -1,7 +1,6 @@
 #pragma once
 // Trial of each hypothesis alone on one base model. The results are in descending order of evidence.
 // Afterwards judge() tests the leading hypotheses on unseen events.
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "validate/event/progress.hpp"
 #include "validate/hypothesis/judge.hpp"
 #include "validate/reduced/free_input.hpp"
+#include "validate/reduced/identify.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::hypothesis {
@@ -65,10 +65,8 @@ fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& t
 
 /// Returns the free parameters of a base model: those of the given model, and those of effects added before.
 std::vector<fit::FreeParameter> free_with_own(const BaseModel& base_model);
-/// Returns the number of the random stream for the draws of a hypothesis of this name.
-std::uint64_t stream_of(const std::string& name);
-/// Returns the length of the first record [s].
-double length(const BaseModel& base_model);
+/// Returns the plant at its prior mean with the parameters that the identification of `h` draws and frees.
+reduced::Trial trial_of(const BaseModel& base_model, const Hypothesis& h);
 /// Returns whether a hypothesis with the predicted cost `predicted` cannot be accepted. `none`: predicted
 /// cost of the base model. The prediction may be wrong by search.near.
 bool cannot_be_accepted(const BaseModel& base_model, double predicted, double none);
@@ -79,9 +77,9 @@ std::string too_small(double gain);
 /// added before at their prior means.
 sim::plant::Plant prior_mean(const BaseModel& base_model, const Hypothesis& h);
 
-/// Returns the fit of the hypothesis with the standard errors that its evidence requires. Empty if they
+/// Returns the fit of the hypothesis with the standard errors that its evidence requires, or `f` if they
 /// cannot be computed.
-std::optional<fit::Fit> with_errors(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& f);
+fit::Fit with_errors(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& f);
 
 /// Fits a hypothesis that the search has not fitted, from its start values.
 void fit_alone(const BaseModel& base_model, Judgement& j);
