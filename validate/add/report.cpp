@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 
 #include "validate/calibrate/report.hpp"
+#include "validate/diagnose/report.hpp"
 #include "validate/thresholds/list.hpp"
 
 namespace swingbank::validate::add {
@@ -57,20 +57,6 @@ report::Table values_table(const Addition& a) {
   return t;
 }
 
-json parameter_json(const fit::FittedParameter& p, bool own) {
-  return {{"effect", p.block},
-          {"name", p.name},
-          {"unit", p.unit},
-          {"added", own},
-          {"start", p.start},
-          {"value", p.value},
-          {"standard_error", p.error},
-          {"low_95", p.low},
-          {"high_95", p.high},
-          {"variance_reduction", p.decided},
-          {"at_bound", p.at_bound}};
-}
-
 }  // namespace
 
 report::Table addition_table(const Addition& a) {
@@ -117,8 +103,11 @@ json addition_json(const Addition& a) {
     event["reduced_chi2_refitted_without"] = e.refitted;
     j["events"].push_back(event);
   }
-  for (std::size_t i = 0; i < a.parameters.size(); ++i)
-    j["parameters"].push_back(parameter_json(a.parameters[i], i < static_cast<std::size_t>(a.own)));
+  for (std::size_t i = 0; i < a.parameters.size(); ++i) {
+    json p = diagnose::parameter_json(a.parameters[i]);
+    p["added"] = i < static_cast<std::size_t>(a.own);
+    j["parameters"].push_back(std::move(p));
+  }
   return j;
 }
 

@@ -100,17 +100,7 @@ void bound(std::vector<ReportEvent>& events, compare::ErrorMap ReportChannel::*w
 
 nlohmann::json parameters_json(const fit::Fit& fit) {
   auto rows = nlohmann::json::array();
-  for (const auto& p : fit.parameters)
-    rows.push_back({{"effect", p.block},
-                    {"name", p.name},
-                    {"unit", p.unit},
-                    {"start", p.start},
-                    {"value", p.value},
-                    {"standard_error", p.error},
-                    {"low_95", p.low},
-                    {"high_95", p.high},
-                    {"at_bound", p.at_bound},
-                    {"variance_reduction", p.decided}});
+  for (const auto& p : fit.parameters) rows.push_back(parameter_json(p));
   return rows;
 }
 
@@ -233,6 +223,14 @@ ReportFigures report_figures(const Diagnosis& d) {
   bound(figures.events, &ReportChannel::map_before);
   if (figures.after) bound(figures.events, &ReportChannel::map_after);
   return figures;
+}
+
+nlohmann::json parameter_json(const fit::FittedParameter& p) {
+  return {{"effect", p.block},      {"name", p.name},
+          {"unit", p.unit},         {"start", p.start},
+          {"value", p.value},       {"standard_error", p.error},
+          {"low_95", p.low},        {"high_95", p.high},
+          {"at_bound", p.at_bound}, {"variance_reduction", p.decided}};
 }
 
 nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& d,

@@ -42,6 +42,8 @@ const reduced::FreeInput* better_input(const Diagnosis& diagnosis);
 /// to `diagnosis`, which must outlive the result.
 ReportFigures report_figures(const Diagnosis& diagnosis);
 
+/// Returns a fitted parameter as JSON.
+nlohmann::json parameter_json(const fit::FittedParameter& p);
 /// Returns verdict, evidence, parameters and error maps, without samples.
 nlohmann::json diagnosis_json(const plant::PlantModel& model, const Diagnosis& diagnosis,
                               const report::Provenance& provenance);
