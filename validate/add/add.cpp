@@ -311,9 +311,8 @@ Removal try_without(const plant::PlantModel& model, std::size_t control, std::ve
   fit::Fit with = fit_without(model, bench, states, prior_sd),
            without = fit_without(r.model, bench, states, prior_sd);
   if (with.failed.empty() && without.failed.empty() && bench.measure_noise(with, model.conventions)) {
-    with = bench.go_on(model.under_test(), fit::free_parameters(model.plant, prior_sd), with);
-    without = bench.go_on({r.model.plant, model.conventions}, fit::free_parameters(r.model.plant, prior_sd),
-                          without);
+    with = bench.go_on(hypothesis::unchanged(model.under_test()), with);
+    without = bench.go_on(hypothesis::unchanged(r.model.under_test()), without);
   }
   r.evidence = fit::gain(without, with, fit::criterion);
   if (without.failed.empty()) r.model.plant = without.plant;

@@ -94,10 +94,10 @@ struct Completion {
   bool adequate = false;         ///< whether the residual is noise in every event
   std::string sentence;          ///< result in words
 };
-/// Diagnoses the model and adds what each diagnosis names, in at most `most` additions. After each addition,
+/// Diagnoses the model and adds what each diagnosis names, in at most four additions. After each addition,
 /// the controls added before are removed if they lack evidence (try_without). The held-out events are
 /// excluded from diagnoses and fits.
 Completion add_until_adequate(const plant::PlantModel& model, const std::vector<record::Record>& records,
-                              const AddOptions& options, int most = 4);
+                              const AddOptions& options);
 
 }  // namespace swingbank::validate::add

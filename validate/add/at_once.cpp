@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "validate/hypothesis/search.hpp"
-#include "validate/noise/level.hpp"
+#include "validate/noise/pre_event.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::add {

@@ -42,14 +42,15 @@ void prune(Completion& c, const std::vector<record::Record>& records, const AddO
   }
 }
 
-void work(const std::vector<record::Record>& records, const AddOptions& options, int most, Completion& c) {
+void work(const std::vector<record::Record>& records, const AddOptions& options, Completion& c) {
+  constexpr std::size_t kMostAdditions = 4;
   diagnose::DiagnoseOptions how;
   how.prior_sd = options.calibrate.prior_sd;
   how.adequate = options.calibrate.adequate;
   how.events = options.calibrate.events;
   how.progress = options.calibrate.progress;
   std::string names;
-  while (static_cast<int>(c.added.size()) < most) {
+  while (c.added.size() < kMostAdditions) {
     const diagnose::Diagnosis d =
         diagnose::diagnose(c.model, calibrate::seen_records(records, options.calibrate.held_out), how);
     if (d.verdict == diagnose::Verdict::interrupted) throw Interrupted{};
@@ -80,17 +81,18 @@ void work(const std::vector<record::Record>& records, const AddOptions& options,
       return;
     }
   }
-  c.sentence = fmt::format("Not adequate: the residual exceeds noise after {} additions ({}).", most, names);
+  c.sentence =
+      fmt::format("Not adequate: the residual exceeds noise after {} additions ({}).", kMostAdditions, names);
 }
 
 }  // namespace
 
 Completion add_until_adequate(const plant::PlantModel& model, const std::vector<record::Record>& records,
-                              const AddOptions& options, int most) {
+                              const AddOptions& options) {
   Completion c;
   c.model = model;
   try {
-    work(records, options, most, c);
+    work(records, options, c);
   } catch (const Interrupted&) {
     if (c.added.empty()) throw;
     throw fit::InterruptedFit{{}, c.added.back().with};

@@ -1,6 +1,8 @@
 #include "validate/add/detail/bench.hpp"
 
 #include "base/in_parallel.hpp"
+#include "validate/hypothesis/judge.hpp"
+#include "validate/noise/level.hpp"
 #include "validate/noise/pre_event.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
@@ -42,9 +44,9 @@ std::vector<fit::EventState> Bench::states_of(const std::vector<fit::EventFit>& 
   return states;
 }
 
-fit::Fit Bench::go_on(const sim::plant::PlantUnderTest& tested, const std::vector<fit::FreeParameter>& free,
-                      const fit::Fit& f) const {
-  return fit::fit(tested, seen_, free, fit::continued({}, f, free));
+fit::Fit Bench::go_on(const hypothesis::Hypothesis& h, const fit::Fit& f) const {
+  const auto free = hypothesis::free_of(h, options_.prior_sd);
+  return fit::fit(h.under_test(), seen_, free, fit::continued({}, f, free));
 }
 
 void Bench::report_progress(event::Phase phase, int done, int total) const {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "validate/calibrate/calibrate.hpp"
+#include "validate/hypothesis/hypothesis.hpp"
 
 namespace swingbank::validate::add {
 
@@ -23,9 +24,8 @@ class Bench {
                                                 event::Phase phase) const;
   /// Returns the states of the seen events.
   [[nodiscard]] std::vector<fit::EventState> states_of(const std::vector<fit::EventFit>& fits) const;
-  /// Continues a fit to the seen events from the end of `f`.
-  [[nodiscard]] fit::Fit go_on(const sim::plant::PlantUnderTest& tested,
-                               const std::vector<fit::FreeParameter>& free, const fit::Fit& f) const;
+  /// Continues the fit `f` of a hypothesis to the seen events from its end.
+  [[nodiscard]] fit::Fit go_on(const hypothesis::Hypothesis& h, const fit::Fit& f) const;
   void report_progress(event::Phase phase, int done, int total) const;
 
  private:

@@ -9,7 +9,6 @@
 #include <list>
 
 #include "base/stop_signal.hpp"
-#include "validate/fit/interrupted.hpp"
 #include "validate/thresholds/thresholds.hpp"
 
 namespace swingbank::validate::add {
@@ -118,12 +117,9 @@ void JointFit::leave_out() {
 /// residuals and repeats all fits.
 bool JointFit::measure_noise() {
   if (!bench_.measure_noise(a_.with, a_.hypothesis.conventions)) return false;
-  const auto repeat = [&](const hypothesis::Hypothesis& h, fit::Fit& f) {
-    f = bench_.go_on(h.under_test(), hypothesis::free_of(h, base_model_.prior_sd), f);
-  };
-  repeat(hypothesis::unchanged(base_model_.under_test()), a_.without);
-  repeat(a_.hypothesis, a_.with);
-  for (LeftOut& l : left_out_) repeat(l.others, l.fit);
+  a_.without = bench_.go_on(hypothesis::unchanged(base_model_.under_test()), a_.without);
+  a_.with = bench_.go_on(a_.hypothesis, a_.with);
+  for (LeftOut& l : left_out_) l.fit = bench_.go_on(l.others, l.fit);
   return true;
 }
 
@@ -220,8 +216,7 @@ fit::Fit JointFit::from_other(const hypothesis::Hypothesis& h, const fit::Fit& f
 /// Returns the fit completed with standard errors. Fits of the search have none, or those of an integration
 /// with relaxed tolerance.
 fit::Fit JointFit::finished(const hypothesis::Judgement& j) const {
-  fit::Fit f =
-      bench_.go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, base_model_.prior_sd), j.fit);
+  fit::Fit f = bench_.go_on(j.hypothesis, j.fit);
   return f.failed.empty() ? f : j.fit;
 }
 

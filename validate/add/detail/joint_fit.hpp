@@ -1,6 +1,5 @@
 #pragma once
 // Joint fit of the effects that are added, and refits of the model without all effects and without each one.
-#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
