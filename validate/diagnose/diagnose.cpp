@@ -22,8 +22,10 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-/// Minimum number of hypotheses that are judged if none is accepted.
-constexpr int kAtLeast = 3;
+/// Minimum number of hypotheses that are judged on held-out events if none is accepted, and maximum number.
+constexpr int kAtLeast = 3, kMostJudged = 9;
+/// Number of first effects whose pairs are tried if no hypothesis is accepted alone.
+constexpr std::size_t kFirsts = 2;
 /// Maximum number of refits of the given model from a better start.
 constexpr int kBases = 2;
 /// Number of iterations of each fit that continues after a new noise estimate.
@@ -149,20 +151,16 @@ class Diagnoser {
     result_.events = result_.events.with(
         noise::measure_noise_through({best.fit.plant, best.hypothesis.conventions}, best.fit.events,
                                      best.fit.reduced_chi2(), result_.events));
-    const auto go_on = [&](const sim::plant::PlantUnderTest& tested,
-                           const std::vector<fit::FreeParameter>& free, const fit::Fit& f,
-                           const fit::FitOptions& how) {
-      const fit::FitOptions o = fit::continued(how, f, free);
-      return fit::fit(tested, result_.events, free, o);
+    const auto go_on = [&](const hypothesis::Hypothesis& h, fit::Fit& f) {
+      const auto free = hypothesis::free_of(h, options_.prior_sd);
+      f = fit::fit(h.under_test(), result_.events, free,
+                   fit::continued({.iterations = kOnwards, .lenient = true}, f, free));
     };
-    const fit::FitOptions how{.iterations = kOnwards, .lenient = true};
-    result_.base =
-        go_on(model_.under_test(), fit::free_parameters(model_.plant, options_.prior_sd), result_.base, how);
+    go_on(hypothesis::unchanged(model_.under_test()), result_.base);
     require_fitted(result_.base, model_);
     each(result_.ranked, event::Phase::noise_again, [&](hypothesis::Judgement& j) {
       if (!j.fitted) return;
-      j.fit =
-          go_on(j.hypothesis.under_test(), hypothesis::free_of(j.hypothesis, options_.prior_sd), j.fit, how);
+      go_on(j.hypothesis, j.fit);
       j.gain = fit::gain(result_.base, j.fit, fit::criterion);
     });
     if (stopped()) throw Interrupted{};  // some fits still have the former noise model
@@ -232,8 +230,7 @@ class Diagnoser {
       const bool taken = std::ranges::any_of(firsts, [&](const hypothesis::Judgement* f) {
         return j.hypothesis.slot >= 0 && f->hypothesis.slot == j.hypothesis.slot;
       });
-      if (!taken && can_be_first(j) && static_cast<int>(firsts.size()) < options_.firsts)
-        firsts.push_back(&j);
+      if (!taken && can_be_first(j) && firsts.size() < kFirsts) firsts.push_back(&j);
     }
     std::vector<hypothesis::Judgement> pairs;
     for (const hypothesis::Judgement* first : firsts) {
@@ -381,7 +378,7 @@ class Diagnoser {
   /// ones first. Judges at least three hypotheses if none is accepted.
   void judge_leading(std::vector<hypothesis::Judgement>& tried) const {
     if (tried.empty()) return;
-    const int most = std::min(options_.leading, static_cast<int>(tried.size()));
+    const int most = std::min(kMostJudged, static_cast<int>(tried.size()));
     int leading = 0;
     for (double best = tried.front().gain;;) {  // judging may reduce the leading evidence
       const int judged = leading;
@@ -427,7 +424,7 @@ class Diagnoser {
   /// Applies `act` to each judgement, in parallel.
   template <class F>
   void each(std::span<hypothesis::Judgement> tried, event::Phase phase, F act) const {
-    hypothesis::for_each(
+    hypothesis::for_each_hypothesis(
         present_model(), options_.progress, phase, tried.size(),
         [&](std::size_t k) { return hypothesis::full_name(tried[k].hypothesis); },
         [&](std::size_t k) { act(tried[k]); });

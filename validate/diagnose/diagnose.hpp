@@ -65,9 +65,7 @@ struct DiagnoseOptions {
   double adequate = thresholds::adequacy.reduced_chi2;
   int threads = 0;                     ///< number of threads; 0: number of cores
   event::FitEventOptions events = {};  ///< preparation of the records
-  int leading = 9;                     ///< maximum number of hypotheses that are judged on held-out events
-  int firsts = 2;  ///< number of first effects whose pairs are tried, if no hypothesis is accepted alone
-  event::Progress progress;  ///< recipient of progress messages; empty: none
+  event::Progress progress;            ///< recipient of progress messages; empty: none
   /// Called with each preliminary result (the residual, a small set of wrong parameters, the side, then the
   /// leading hypotheses) and the diagnosis so far. May be empty.
   std::function<void(const std::string& sentence, const Diagnosis& so_far)> preliminary_result = {};

@@ -286,7 +286,7 @@ class Identifying {
   }
   template <class F>
   void each(const std::vector<Identified*>& some, event::Phase phase, F act) const {
-    for_each(
+    for_each_hypothesis(
         base_model_, report_, phase, some.size(), [&](std::size_t k) { return some[k]->hypothesis.name; },
         [&](std::size_t k) { act(*some[k]); });
   }

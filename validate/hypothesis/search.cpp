@@ -161,7 +161,7 @@ class WholeFits {
   }
   template <class F>
   void each(std::vector<Candidate>& candidates, event::Phase phase, F act) const {
-    for_each(
+    for_each_hypothesis(
         base_model_, report_, phase, candidates.size(),
         [&](std::size_t k) { return candidates[k].hypothesis.name; },
         [&](std::size_t k) { act(candidates[k]); });
@@ -177,9 +177,9 @@ class WholeFits {
 
 }  // namespace
 
-void for_each(const BaseModel& base_model, const event::Progress& report, event::Phase phase, std::size_t n,
-              const std::function<std::string(std::size_t)>& name,
-              const std::function<void(std::size_t)>& act) {
+void for_each_hypothesis(const BaseModel& base_model, const event::Progress& report, event::Phase phase,
+                         std::size_t n, const std::function<std::string(std::size_t)>& name,
+                         const std::function<void(std::size_t)>& act) {
   in_parallel(
       n,
       [&](std::size_t k) {

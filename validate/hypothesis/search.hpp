@@ -55,9 +55,9 @@ std::vector<Judgement> try_hypotheses(const BaseModel& base_model, std::vector<H
 
 /// Calls act(k) for k = 0 to n-1 in parallel until the user asks to stop, and reports each finished
 /// hypothesis under `name(k)`, with the name of the effect added before.
-void for_each(const BaseModel& base_model, const event::Progress& report, event::Phase phase, std::size_t n,
-              const std::function<std::string(std::size_t)>& name,
-              const std::function<void(std::size_t)>& act);
+void for_each_hypothesis(const BaseModel& base_model, const event::Progress& report, event::Phase phase,
+                         std::size_t n, const std::function<std::string(std::size_t)>& name,
+                         const std::function<void(std::size_t)>& act);
 
 /// Calls fit::fit for a hypothesis on this base model and reports the result to BaseModel::reached.
 fit::Fit fit_at(const BaseModel& base_model, const sim::plant::PlantUnderTest& tested,

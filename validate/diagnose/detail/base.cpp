@@ -34,14 +34,15 @@ fit::Fit from_extensions(const hypothesis::BaseModel& base_model,
     if (ranked[k].fitted) hypothesis::try_from(base_model, ranked[k].fit, base);
   return std::move(base.fit);
 }
-/// Returns chi2 of each plant over all events, with the event states `states`; infinite if the simulation
+/// Returns chi2 of each plant over all events, with the event states of `fits`; infinite if the simulation
 /// fails. The plants differ only in parameter values and are simulated in SIMD batches.
 std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
                                  const sim::Conventions& conventions, const noise::WhitenedEvents& events,
-                                 const std::vector<event::EventState>& states) {
+                                 const std::vector<fit::EventFit>& fits) {
   std::vector<double> chi2(plants.size(), 0.0);
   for (std::size_t e = 0; e < events.size(); ++e) {
-    const auto responses = event::play_together(plants, conventions, events[e], states[e], {.lenient = true});
+    const auto responses =
+        event::play_together(plants, conventions, events[e], fits[e].state, {.lenient = true});
     for (std::size_t k = 0; k < plants.size(); ++k) {
       fit::EventFit f;
       if (responses[k]) noise::compare(events, e, *responses[k], f);
@@ -56,7 +57,6 @@ std::vector<double> chi2_of_each(std::span<const sim::plant::Plant> plants,
 fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
   constexpr std::array kMultiples = {0.3, 0.5, 0.7, 0.85, 1.2, 1.4, 2.0, 3.3};
   const auto free = fit::free_parameters(base_model.plant, base_model.prior_sd);
-  const std::vector<fit::EventState> states = states_of(base_model.fit.events);
   std::vector<sim::plant::Plant> plants;
   for (const fit::FreeParameter& f : free)
     for (const double multiple : kMultiples) {
@@ -66,7 +66,7 @@ fit::Fit from_another_value(const hypothesis::BaseModel& base_model) {
           sim::plant::search_range(sim::plant::parameter_record(base_model.plant, f.id), value);
       value = std::clamp(value * multiple, range.low, range.high);
     }
-  const auto chi2 = chi2_of_each(plants, base_model.conventions, base_model.events, states);
+  const auto chi2 = chi2_of_each(plants, base_model.conventions, base_model.events, base_model.fit.events);
   const auto least = std::ranges::min_element(chi2);
   if (least == chi2.end() || !std::isfinite(*least)) return base_model.fit;
   fit::FitOptions o = fit::continued({.lenient = true}, base_model.fit, free);

@@ -15,8 +15,6 @@ using report::Ink;
 std::string input_name(const user_model_search::UserModelSearch& s) {
   return s.kind == fit::InputKind::torque ? "inferred torque" : "inferred field voltage";
 }
-/// Returns the user-defined model whose time series is plotted: the one found, or null.
-const user_model_search::UserModelFinding* drawn(const Diagnosis& d) { return d.user_models.found(); }
 
 void add_scatters(const Diagnosis& d, report::Document& page) {
   const user_model_search::UserModelSearch& s = d.user_models;
@@ -30,11 +28,11 @@ void add_scatters(const Diagnosis& d, report::Document& page) {
                          std::string(user_model_search::kUserModelSignals[signal].expression) + " [pu]",
                          input_name(s) + " [pu]",
                          {{"inferred", Ink::inferred, {}}}};
-    if (drawn(d)) plot.groups.push_back({"user-defined model", Ink::fitted, {}});
+    if (s.found()) plot.groups.push_back({"user-defined model", Ink::fitted, {}});
     for (std::size_t e = 0; e < s.traces.size(); ++e)
       for (std::size_t k = 0; k < x[e].size(); ++k) {
         plot.groups[0].points.emplace_back(x[e][k], s.traces[e].input[k]);
-        if (drawn(d)) plot.groups[1].points.emplace_back(x[e][k], drawn(d)->user_model.time_series[e][k]);
+        if (s.found()) plot.groups[1].points.emplace_back(x[e][k], s.found()->user_model.time_series[e][k]);
       }
     page.add(std::move(plot));
   }
@@ -46,8 +44,8 @@ void add_time_series(const Diagnosis& d, report::Document& page) {
     const std::string& name = d.events[e].record.name;
     report::Curves c{name + ": " + input_name(s), "pu", name + " user-defined model", s.traces[e].knots};
     c.series.push_back({"inferred", Ink::inferred, s.traces[e].input});
-    if (drawn(d))
-      c.series.push_back({"user-defined model", Ink::fitted, drawn(d)->user_model.time_series[e]});
+    if (s.found())
+      c.series.push_back({"user-defined model", Ink::fitted, s.found()->user_model.time_series[e]});
     page.add(std::move(c));
   }
 }
