@@ -21,7 +21,6 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr std::size_t kBars = 12;  // maximum number of plotted hypotheses; the table shows all
 constexpr const char *kTorque = "Inferred missing torque, added to Tm",
                      *kField = "Inferred missing field voltage, added to Efd";
 constexpr std::size_t kLeastProbable = 4;  // minimum number of plotted explanations
@@ -259,7 +258,7 @@ class DiagnosisPage {
     const double most = std::max(1.0, d_.ranked.front().gain);
     report::Bars bars{
         "Evidence (logarithmic)", "", std::log10(thresholds::evidence.accepted.value), "accepted", {}};
-    for (std::size_t i = 0; i < std::min(kBars, d_.ranked.size()); ++i)
+    for (std::size_t i = 0; i < std::min(kHypothesesShown, d_.ranked.size()); ++i)
       bars.bars.push_back(
           {hypothesis::full_name(d_.ranked[i].hypothesis), std::log10(std::max(1.0, d_.ranked[i].gain)),
            d_.ranked[i].accepted || (d_.ranked[i].gain >= most && most > 10) ? "good" : "poor",

@@ -13,9 +13,6 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr std::size_t kHypothesesShown = 12;
-constexpr double kShownFrom = 0.01;  ///< minimum probability printed outside the credible set
-
 void add_inputs(const Diagnosis& d, std::string& text) {
   if (d.torque.fit.events.empty() || d.field.fit.events.empty()) return;  // interrupted before the inference
   text += fmt::format(
@@ -48,11 +45,7 @@ void add_hypotheses(const Diagnosis& d, std::string& text) {
       "judgement");
   for (std::size_t i = 0; i < d.ranked.size() && i < kHypothesesShown; ++i) {
     const hypothesis::Judgement& j = d.ranked[i];
-    double before = 0, after = 0;
-    for (const auto& h : j.held_out) {
-      before += h.before / static_cast<double>(j.held_out.size());
-      after += h.after / static_cast<double>(j.held_out.size());
-    }
+    const auto [before, after] = hypothesis::mean_reduced_chi2(j.held_out);
     text += fmt::format("{:<18} {:<12} {:>12.1f} {:>10} {:>42}  {}\n", hypothesis::full_name(j.hypothesis),
                         hypothesis::side_name(j.hypothesis.side), j.gain,
                         j.fitted ? fmt::format("{:.3f}", j.fit.reduced_chi2()) : "",

@@ -128,11 +128,7 @@ FleetRow row_of(const diagnose::Diagnosis& d, const compare::Fitness& submitted)
   row.evidence = best.gain;
   const int tried = static_cast<int>(d.ranked.size());
   row.chance = chance_of(fit::gain(d.base, best.fit), best.fit.fitted - d.base.fitted, tried);
-  double before = 0, after = 0;
-  for (const auto& h : best.held_out) {
-    before += h.before / static_cast<double>(best.held_out.size());
-    after += h.after / static_cast<double>(best.held_out.size());
-  }
+  const auto [before, after] = hypothesis::mean_reduced_chi2(best.held_out);
   if (!best.held_out.empty()) row.unseen_before = std::sqrt(before), row.unseen_after = std::sqrt(after);
   return row;
 }

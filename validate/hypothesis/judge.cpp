@@ -8,6 +8,15 @@
 
 namespace swingbank::validate::hypothesis {
 
+std::pair<double, double> mean_reduced_chi2(const std::vector<HeldOut>& held_out) {
+  double before = 0, after = 0;
+  for (const HeldOut& h : held_out) {
+    before += h.before / static_cast<double>(held_out.size());
+    after += h.after / static_cast<double>(held_out.size());
+  }
+  return {before, after};
+}
+
 std::vector<fit::FreeParameter> free_of(const Hypothesis& h, double prior_sd) {
   std::vector<fit::FreeParameter> free;
   for (const auto& f : fit::free_parameters(h.plant, prior_sd))

@@ -1,6 +1,7 @@
 #pragma once
 // Judgement of a hypothesis: fit to all events, then hold-out of each event in turn (cross-validation).
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "validate/fit/fit.hpp"
@@ -21,6 +22,9 @@ struct HeldOut {
   /// Returns the effect's reduction of the cost of the whole event; negative if the cost rises.
   [[nodiscard]] double saves() const { return (cost_before - cost_after) * values; }
 };
+
+/// Returns the means of HeldOut::before and HeldOut::after; 0 without held-out events.
+std::pair<double, double> mean_reduced_chi2(const std::vector<HeldOut>& held_out);
 
 /// A hypothesis with its fit and verdict.
 struct Judgement {

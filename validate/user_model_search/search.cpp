@@ -124,12 +124,11 @@ class Searcher {
     f.effect = std::make_shared<const sim::Effect>(sim::user_models::make_user_model(
         user_model_toml(user_model, source_of(case_.trial.events)), user_model_name(user_model) + ".toml"));
     hypothesis::Hypothesis& h = f.judgement.hypothesis;
+    h = hypothesis::unchanged(case_.model.under_test());
     h.name = user_model_name(user_model);
     h.side = user_model.kind == fit::InputKind::torque ? hypothesis::Side::mechanical
                                                        : hypothesis::Side::excitation;
-    h.conventions = case_.model.conventions;
-    int block = 0;
-    h.plant = with_user_model(case_.model.plant, *f.effect, block);
+    const int block = sim::plant::insert_block(h.plant, {f.effect.get(), f.effect->default_parameters()});
     for (std::size_t i = 0; i < user_model.parameters.size(); ++i)
       h.free.push_back({{block, static_cast<int>(i)}, kRegressionPriorSd});
     h.starts = {f.effect->default_parameters()};
@@ -179,12 +178,6 @@ class Searcher {
 
 }  // namespace
 
-sim::plant::Plant with_user_model(const sim::plant::Plant& plant, const sim::Effect& effect, int& block) {
-  sim::plant::Plant with = plant;
-  block = sim::plant::insert_block(with, {&effect, effect.default_parameters()});
-  return with;
-}
-
 UserModelSearch search_user_models(const Unexplained& case_, const event::Progress& report) {
   const bool torque = case_.torque.reduced_chi2() < case_.field.reduced_chi2();
   const reduced::FreeInput &first = torque ? case_.torque : case_.field,
@@ -206,12 +199,7 @@ UserModelSearch search_user_models(const Unexplained& case_, const event::Progre
 std::string user_model_sentence(const UserModelSearch& search, std::size_t hypotheses) {
   const UserModelFinding* user_model = search.found();
   if (!user_model) return {};
-  double before = 0, after = 0;
-  const auto& unseen = user_model->judgement.held_out;
-  for (const auto& h : unseen) {
-    before += h.before / static_cast<double>(unseen.size());
-    after += h.after / static_cast<double>(unseen.size());
-  }
+  const auto [before, after] = hypothesis::mean_reduced_chi2(user_model->judgement.held_out);
   return fmt::format(
       "None of the {} known effects explains the records. A user-defined model does: {}. On held-out "
       "events the normalised RMS falls from {:.1f} to {:.2f}.",

@@ -56,8 +56,4 @@ UserModelSearch search_user_models(const Unexplained& case_, const event::Progre
 /// Returns an empty text if no model was accepted.
 std::string user_model_sentence(const UserModelSearch& search, std::size_t hypotheses);
 
-/// Returns the plant with the user-defined model inserted after the other blocks of the model's slot. Sets
-/// `block` to the number of the inserted block.
-sim::plant::Plant with_user_model(const sim::plant::Plant& plant, const sim::Effect& effect, int& block);
-
 }  // namespace swingbank::validate::user_model_search

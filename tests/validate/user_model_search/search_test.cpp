@@ -168,8 +168,7 @@ struct Case {
     plant::PlantModel truth = model;
     for (const auto& f : fit::free_parameters(truth.plant, kPriorSd))
       sim::plant::parameter_value(truth.plant, f.id) *= 1 + 0.1 * std::sin(3.0 * f.id.index + 1);
-    int block = 0;
-    if (user_model) truth.plant = with_user_model(truth.plant, *user_model, block);
+    if (user_model) sim::plant::insert_block(truth.plant, {user_model, user_model->default_parameters()});
     std::mt19937_64 generator(3);
     std::normal_distribution<double> normal;
     std::vector<record::Record> records;

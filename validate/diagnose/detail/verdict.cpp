@@ -16,7 +16,6 @@
 namespace swingbank::validate::diagnose {
 namespace {
 
-constexpr double kEffectShownFrom = 0.01;    ///< minimum probability of a single effect in the sentence
 constexpr std::size_t kPairsInSentence = 3;  ///< maximum number of pairs in the sentence; the table shows all
 
 /// Returns the evidence at which an explanation with these effects is as probable as the model without them.
@@ -74,12 +73,8 @@ std::string capitalised(std::string text) {
 /// Describes the decrease of the error on held-out events. If an effect acts in one event only, no other
 /// event can predict it; the errors are then those of the fit that includes this event.
 std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& best) {
-  double saved = 0, before = 0, after = 0;
-  for (const auto& h : best.held_out) {
-    saved += std::max(0.0, h.saves());
-    before += h.before / static_cast<double>(best.held_out.size());
-    after += h.after / static_cast<double>(best.held_out.size());
-  }
+  double saved = 0;
+  for (const auto& h : best.held_out) saved += std::max(0.0, h.saves());
   const auto most = std::ranges::max_element(best.held_out, {}, &hypothesis::HeldOut::saves);
   const auto e = static_cast<std::size_t>(most - best.held_out.begin());
   if (most->saves() > thresholds::held_out.alone * saved &&
@@ -88,6 +83,7 @@ std::string fall_of_error(const fit::Fit& base, const hypothesis::Judgement& bes
         "it acts in {} alone, so no other event predicts it; with this event in the fit, its "
         "normalised RMS falls from {:.2f} to {:.2f}",
         most->record, std::sqrt(base.events[e].reduced_chi2()), std::sqrt(best.fit.events[e].reduced_chi2()));
+  const auto [before, after] = hypothesis::mean_reduced_chi2(best.held_out);
   return fmt::format("on held-out events the normalised RMS falls from {:.1f} to {:.2f}", std::sqrt(before),
                      std::sqrt(after));
 }
@@ -152,7 +148,7 @@ std::string by_effect_sentence(const Diagnosis& d) {
     if (!h.with.empty()) count(h.with, e.probability);
     count(h.name, e.probability);
   }
-  std::erase_if(alone, [](const auto& e) { return e.probability < kEffectShownFrom; });
+  std::erase_if(alone, [](const auto& e) { return e.probability < kShownFrom; });
   std::ranges::stable_sort(alone, std::greater<>(), &hypothesis::Explanation::probability);
   return "Probability of each effect: " + with_probabilities(alone) + ".";
 }

@@ -5,6 +5,9 @@
 
 namespace swingbank::validate::diagnose {
 
+constexpr double kShownFrom = 0.01;           ///< minimum probability in texts, except in the credible set
+constexpr std::size_t kHypothesesShown = 12;  ///< maximum number in text and chart; the page's table has all
+
 /// Sets verdict, side, sentence, effects and their competitors from the fit of the given model, the inferred
 /// inputs and the judged hypotheses. Searches for a user-defined model if no known effect explains the
 /// records.
