@@ -17,7 +17,7 @@
 #include "jobs/verdict.hpp"
 #include "sim/user_models/user_model.hpp"
 #include "validate/compare/played.hpp"
-#include "validate/plant/load_with_user_models.hpp"
+#include "validate/plant/plant_model.hpp"
 
 namespace swingbank::jobs {
 

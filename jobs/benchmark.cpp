@@ -12,7 +12,7 @@
 #include "jobs/verdict.hpp"
 #include "validate/benchmark/generated_input.hpp"
 #include "validate/benchmark/report.hpp"
-#include "validate/plant/load_with_user_models.hpp"
+#include "validate/plant/plant_model.hpp"
 #include "validate/thresholds/adequacy.hpp"
 
 namespace swingbank::jobs::benchmark_command {

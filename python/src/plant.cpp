@@ -10,9 +10,9 @@
 #include "sim/grid/unit.hpp"
 #include "sim/plant/parameter_id.hpp"
 #include "validate/event/component_model.hpp"
-#include "validate/plant/load_with_user_models.hpp"
 #include "validate/plant/plant_dyr.hpp"
 #include "validate/plant/plant_file.hpp"
+#include "validate/plant/plant_model.hpp"
 
 namespace swingbank::python {
 namespace {

@@ -1,6 +1,5 @@
 #include "validate/plant/infinite_bus.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 

@@ -5,15 +5,29 @@
 #include <algorithm>
 
 #include "base/write_file.hpp"
+#include "sim/plant/parameter_id.hpp"
 
 namespace swingbank::validate::plant {
 namespace {
 
 std::vector<const sim::plant::Block*> dyr_blocks(const PlantModel& model) {
-  std::vector<const sim::plant::Block*> all = {&model.plant.machine};
-  if (model.plant.transformer.effect) all.push_back(&model.plant.transformer);
-  for (const auto& block : model.plant.controls) all.push_back(&block);
+  std::vector<const sim::plant::Block*> all;
+  for (int b = 0; b < sim::plant::first_measurement(model.plant); ++b)
+    all.push_back(&sim::plant::block_at(model.plant, b));
   return all;
+}
+
+/// Returns the names of the blocks that are new or whose values differ from `before`.
+std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model) {
+  const auto old = dyr_blocks(before);
+  std::vector<std::string> names;
+  for (const auto* block : dyr_blocks(model)) {
+    const auto same = [&](const auto* o) {
+      return o->effect->name == block->effect->name && o->p == block->p;
+    };
+    if (std::ranges::none_of(old, same)) names.emplace_back(block->effect->name);
+  }
+  return names;
 }
 
 void check_bus(const PlantModel& model, const std::string& where, Problems& problems) {
@@ -52,18 +66,6 @@ std::string dyd_text(const PlantModel& model, const std::vector<std::string>& he
                  "write base_kv under [record], or give --kv");
   return comments(model, head, "# ") +
          sim::grid::unit_dyd(model.plant, model.bus, model.id, place, where, problems);
-}
-
-std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model) {
-  const auto old = dyr_blocks(before);
-  std::vector<std::string> names;
-  for (const auto* block : dyr_blocks(model)) {
-    const auto same = [&](const auto* o) {
-      return o->effect->name == block->effect->name && o->p == block->p;
-    };
-    if (std::ranges::none_of(old, same)) names.emplace_back(block->effect->name);
-  }
-  return names;
 }
 
 WrittenRecords write_records_beside(const std::filesystem::path& plant_file, const PlantModel& before,

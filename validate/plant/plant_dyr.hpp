@@ -19,9 +19,6 @@ std::string dyr_text(const PlantModel& model, const std::vector<std::string>& he
 std::string dyd_text(const PlantModel& model, const std::vector<std::string>& head,
                      const sim::formats::DydPlace& place, const std::string& where, Problems& problems);
 
-/// Returns the names of the blocks that are new or whose values differ from `before`.
-std::vector<std::string> changed_blocks(const PlantModel& before, const PlantModel& model);
-
 /// Format of dynamic records.
 enum class RecordFormat {
   dyr,  ///< of PSS/E

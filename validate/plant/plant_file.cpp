@@ -6,6 +6,7 @@
 
 #include "base/input_file.hpp"
 #include "base/write_file.hpp"
+#include "sim/plant/parameter_id.hpp"
 #include "sim/user_models/user_model.hpp"
 #include "validate/plant/detail/staged.hpp"
 
@@ -68,29 +69,19 @@ void append_block(std::string& text, const PlantModel& model, const sim::plant::
   }
 }
 
-std::vector<const sim::plant::Block*> blocks_of(const PlantModel& model) {
-  std::vector<const sim::plant::Block*> all = {&model.plant.machine};
-  if (model.plant.transformer.effect) all.push_back(&model.plant.transformer);
-  for (const auto* list : {&model.plant.controls, &model.plant.measurements})
-    for (const auto& block : *list) all.push_back(&block);
-  return all;
-}
-
 /// Appends those values from before a rejected calibration that differ from the present ones.
 void append_submitted(std::string& text, const PlantModel& model) {
   if (!model.submitted) return;
   text +=
       "\n[submitted]  # values from before an inadequate calibration; calibrate, add and diagnose start "
       "from them\n";
-  PlantModel before = model;
-  before.plant = *model.submitted;
-  const auto old = blocks_of(before), now = blocks_of(model);
-  for (std::size_t b = 0; b < now.size(); ++b) {
+  for (int b = 0; b < sim::plant::block_count(model.plant); ++b) {
+    const auto &old = sim::plant::block_at(*model.submitted, b), &now = sim::plant::block_at(model.plant, b);
     std::string changed;
-    for (std::size_t i = 0; i < now[b]->p.size(); ++i)
-      if (old[b]->p[i] != now[b]->p[i])
-        changed += fmt::format("{} = {}\n", now[b]->effect->parameters[i].name, number(old[b]->p[i]));
-    if (!changed.empty()) text += fmt::format("[submitted.{}]\n{}", now[b]->effect->name, changed);
+    for (std::size_t i = 0; i < now.p.size(); ++i)
+      if (old.p[i] != now.p[i])
+        changed += fmt::format("{} = {}\n", now.effect->parameters[i].name, number(old.p[i]));
+    if (!changed.empty()) text += fmt::format("[submitted.{}]\n{}", now.effect->name, changed);
   }
 }
 
@@ -130,7 +121,8 @@ std::string compose(const PlantModel& model, const std::vector<std::string>& pro
   for (const auto& [word, column] : model.reading.columns)
     text += fmt::format("{} = {}\n", word, in_quotes(column));
   text += staged_text(model.reading.staged, in_quotes, number);
-  for (const auto* block : blocks_of(model)) append_block(text, model, *block);
+  for (int b = 0; b < sim::plant::block_count(model.plant); ++b)
+    append_block(text, model, sim::plant::block_at(model.plant, b));
   append_submitted(text, model);
   return text;
 }
@@ -194,10 +186,11 @@ std::string difference(const PlantModel& a, const PlantModel& b) {
       a.conventions.speed_voltage != b.conventions.speed_voltage ||
       a.conventions.mechanical_power != b.conventions.mechanical_power)
     return "the conventions";
-  const auto left = blocks_of(a), right = blocks_of(b);
-  if (left.size() != right.size()) return "the number of effects";
-  for (std::size_t k = 0; k < left.size(); ++k)
-    if (auto why = block_difference(*left[k], *right[k]); !why.empty()) return why;
+  if (sim::plant::block_count(a.plant) != sim::plant::block_count(b.plant)) return "the number of effects";
+  for (int k = 0; k < sim::plant::block_count(a.plant); ++k)
+    if (auto why = block_difference(sim::plant::block_at(a.plant, k), sim::plant::block_at(b.plant, k));
+        !why.empty())
+      return why;
   return {};
 }
 

@@ -10,11 +10,11 @@
 #include "base/sha256.hpp"
 #include "sim/grid/case_words.hpp"
 #include "sim/plant/orderings.hpp"
+#include "sim/plant/parameter_id.hpp"
 #include "sim/plant/usual.hpp"
 #include "sim/user_models/user_model.hpp"
 #include "validate/plant/detail/plausible.hpp"
 #include "validate/plant/detail/staged.hpp"
-#include "validate/plant/load_with_user_models.hpp"
 #include "validate/plant/unknown_keys.hpp"
 
 namespace swingbank::validate::plant {
@@ -183,16 +183,12 @@ void read_around(Config& config, PlantModel& model) {
 
 /// Returns the value of a parameter of a plant; nullptr if the plant has no such effect or parameter.
 double* value_in(sim::plant::Plant& plant, const std::string& effect, const std::string& name) {
-  const auto find = [&](sim::plant::Block& block) -> double* {
-    if (!block.effect || block.effect->name != effect) return nullptr;
-    const int i = block.effect->parameter_index(name);
-    return i < 0 ? nullptr : &block.p.at(static_cast<std::size_t>(i));
-  };
-  double* value = find(plant.machine);
-  if (!value) value = find(plant.transformer);
-  for (auto& control : plant.controls)
-    if (!value) value = find(control);
-  return value;
+  for (int b = 0; b < sim::plant::first_measurement(plant); ++b) {
+    sim::plant::Block& block = sim::plant::block_at(plant, b);
+    const int i = block.effect && block.effect->name == effect ? block.effect->parameter_index(name) : -1;
+    if (i >= 0) return &block.p.at(static_cast<std::size_t>(i));
+  }
+  return nullptr;
 }
 
 /// Reads the values from before a rejected calibration, by effect and parameter.
@@ -362,19 +358,6 @@ PlantModel read_plant(Config& config, PlantModel model) {
   return model;
 }
 
-PlantModel parse_with_user_models(const std::string& text, const fs::path& file,
-                                  const std::vector<fs::path>& user_models) {
-  if (is_columns(text))
-    throw InputError({"the file is a record", file.string(), "a plant file is required",
-                      "give the plant file (.toml) as --model, and the record as --records"});
-  Config config(text, file);
-  PlantModel model;
-  for (const auto& user_model : user_models) sim::user_models::load_user_model(user_model, model.library);
-  model.origin = file.string();
-  model.sha256 = sha256(text);
-  return read_plant(config, std::move(model));
-}
-
 }  // namespace
 
 std::string subject(const PlantModel& model) {
@@ -387,15 +370,22 @@ std::string plant_schema() {
   return describe_keys("Plant file of Swingbank", [](Config& config) { read_plant(config, {}); });
 }
 
-PlantModel parse_plant_model(const std::string& text, const fs::path& file) {
-  return parse_with_user_models(text, file, {});
+PlantModel parse_plant_model(const std::string& text, const fs::path& file,
+                             const std::vector<fs::path>& user_models) {
+  if (is_columns(text))
+    throw InputError({"the file is a record", file.string(), "a plant file is required",
+                      "give the plant file (.toml) as --model, and the record as --records"});
+  Config config(text, file);
+  PlantModel model;
+  for (const auto& user_model : user_models) sim::user_models::load_user_model(user_model, model.library);
+  model.origin = file.string();
+  model.sha256 = sha256(text);
+  return read_plant(config, std::move(model));
 }
 
-PlantModel load_plant_model(const fs::path& file) { return load_plant_model(file, {}); }
-
 PlantModel load_plant_model(const fs::path& file, const std::vector<fs::path>& user_models) {
-  return parse_with_user_models(
-      read_input(file, "cannot read the plant file", "give the path of a plant .toml"), file, user_models);
+  return parse_plant_model(read_input(file, "cannot read the plant file", "give the path of a plant .toml"),
+                           file, user_models);
 }
 
 PlantModel as_submitted(PlantModel model) {

@@ -1,7 +1,6 @@
 #pragma once
 // Model of one plant for the commands that use records: a .toml file that names the effects and every
 // parameter, or one generator of a grid case (PSS/E, PSLF or MATPOWER).
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -54,9 +53,12 @@ std::string subject(const PlantModel& model);
 /// missing ones take default values only if their block has `default_values = true`. Throws InputError with
 /// every fault of the file: unknown keys, effects or parameters (the known ones are listed), missing ones,
 /// wrong types, values that the equations do not allow. Unusual values become warnings, each with its line.
-PlantModel load_plant_model(const std::filesystem::path& file);
+/// The library also contains the effects of the files `user_models`, which the plant file need not name.
+PlantModel load_plant_model(const std::filesystem::path& file,
+                            const std::vector<std::filesystem::path>& user_models = {});
 /// Reads a plant file from its text. `file` names it in messages; relative paths refer to its folder.
-PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file);
+PlantModel parse_plant_model(const std::string& text, const std::filesystem::path& file,
+                             const std::vector<std::filesystem::path>& user_models = {});
 /// Returns the JSON Schema of plant files.
 std::string plant_schema();
 /// Returns the model to fit or diagnose: with the values from before a rejected calibration, or else
