@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 
 #include "base/in_parallel.hpp"
 #include "base/stop_signal.hpp"

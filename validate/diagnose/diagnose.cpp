@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <limits>
-#include <optional>
 #include <span>
 
 #include "base/in_parallel.hpp"

@@ -1,7 +1,6 @@
 // Computation of the traces from the playback of the plant with the inferred input.
 #include "validate/user_model_search/detail/traces.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "validate/switching/steady.hpp"
