@@ -212,8 +212,7 @@ TestResult run_test(const Test& t, const BenchmarkInputs& in, const Record& give
                    output_of(e.playback, o), e));
   if (behind)
     e.channels.push_back(
-        channel_of({.name = "V", .unit = "pu", .scale = 1, .floor = 0, .starts_at_mean = false}, e.record.V,
-                   e.playback.V, e));
+        channel_of(rule_of(playin::Output::V, e.record.base, per_machine), e.record.V, e.playback.V, e));
   if (in.model.plant.machine.effect->converter) add_currents(e, per_machine);
   for (const auto& c : e.channels)
     for (const Phase phase : thresholds::kPhases)

@@ -22,16 +22,16 @@ struct KindRecord {
   int sign;      ///< required sign of the size; 0: either
   bool has_end;  ///< whether the key `end` is required
 };
-constexpr std::array<KindRecord, kTestKinds> kKinds = {{{"voltage_dip", "pu", 1, -1, true},
-                                                        {"voltage_swell", "pu", 1, 1, true},
-                                                        {"voltage_step", "pu", 1, 0, false},
-                                                        {"frequency_step", "Hz", 10, 0, false},
-                                                        {"frequency_ramp", "Hz/s", 10, 0, true},
-                                                        {"phase_step", "deg", 180, 0, false},
-                                                        {"scr_step", "-", 1000, -1, false},
-                                                        {"v_reference_step", "pu", 1, 0, false},
-                                                        {"q_reference_step", "pu", 2, 0, false},
-                                                        {"p_reference_step", "pu", 2, 0, false}}};
+constexpr std::array<KindRecord, 10> kKinds = {{{"voltage_dip", "pu", 1, -1, true},
+                                                {"voltage_swell", "pu", 1, 1, true},
+                                                {"voltage_step", "pu", 1, 0, false},
+                                                {"frequency_step", "Hz", 10, 0, false},
+                                                {"frequency_ramp", "Hz/s", 10, 0, true},
+                                                {"phase_step", "deg", 180, 0, false},
+                                                {"scr_step", "-", 1000, -1, false},
+                                                {"v_reference_step", "pu", 1, 0, false},
+                                                {"q_reference_step", "pu", 2, 0, false},
+                                                {"p_reference_step", "pu", 2, 0, false}}};
 const KindRecord& record_of(TestKind kind) { return kKinds.at(static_cast<std::size_t>(kind)); }
 
 constexpr std::array<std::string_view, 11> kKeys = {"name", "kind",     "record", "event",  "end", "size",

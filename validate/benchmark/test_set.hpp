@@ -25,7 +25,6 @@ enum class TestKind {
   q_reference_step,
   p_reference_step,
 };
-constexpr int kTestKinds = 10;              ///< number of kinds
 std::string_view kind_name(TestKind kind);  ///< "voltage_dip"
 std::string_view size_unit(TestKind kind);  ///< unit of Test::size: "pu", "Hz", "Hz/s", "deg", "-"
 bool is_reference_step(TestKind kind);      ///< whether a reference of the plant is stepped
