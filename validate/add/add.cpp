@@ -47,9 +47,7 @@ std::vector<double> allowances(const sim::plant::PlantUnderTest& fitted, const B
         known[e] =
             fit::information(fit::event_sensitivities(fitted, bench.all().whitened(e), fits[e].state, free));
       },
-      [&](int done) {
-        bench.report_progress(event::Phase::sensitivities, done, static_cast<int>(fits.size()));
-      });
+      [&](int done) { bench.report_progress(event::Phase::sensitivities, done); });
   const auto n = static_cast<Eigen::Index>(free.size());
   const Eigen::MatrixXd prior = Eigen::MatrixXd::Identity(n, n);
   Eigen::MatrixXd all = prior;

@@ -33,7 +33,7 @@ std::vector<fit::EventFit> Bench::each(const sim::plant::PlantUnderTest& tested,
         if (!f.failed.empty()) throw event::playback_failure(all_[e].record.name, f.failed);
         fits[e] = std::move(f.events.front());
       },
-      [&](int done) { report_progress(phase, done, static_cast<int>(all_.size())); });
+      [&](int done) { report_progress(phase, done); });
   return fits;
 }
 
@@ -49,8 +49,8 @@ fit::Fit Bench::go_on(const hypothesis::Hypothesis& h, const fit::Fit& f) const 
   return fit::fit(h.under_test(), seen_, free, fit::continued({}, f, free));
 }
 
-void Bench::report_progress(event::Phase phase, int done, int total) const {
-  if (options_.progress) options_.progress(phase, "", done, total);
+void Bench::report_progress(event::Phase phase, int done) const {
+  if (options_.progress) options_.progress(phase, "", done, static_cast<int>(all_.size()));
 }
 
 void Bench::keep_seen() {

@@ -26,7 +26,7 @@ class Bench {
   [[nodiscard]] std::vector<fit::EventState> states_of(const std::vector<fit::EventFit>& fits) const;
   /// Continues the fit `f` of a hypothesis to the seen events from its end.
   [[nodiscard]] fit::Fit go_on(const hypothesis::Hypothesis& h, const fit::Fit& f) const;
-  void report_progress(event::Phase phase, int done, int total) const;
+  void report_progress(event::Phase phase, int done) const;
 
  private:
   void keep_seen();
