@@ -181,17 +181,6 @@ double chance_of(double fall, int added, int hypotheses) {
 FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const fs::path& out,
                             const diagnose::DiagnoseOptions& given) {
   const fs::path folder = out / plant.name, temporary = out / ("." + plant.name + ".part");
-  const auto failed = [&](const std::string& why) {
-    const FleetRow row = fleet::failed_row(plant.name, why);
-    try {  // results of an earlier run with other inputs must not remain
-      check_ours(folder);
-      fs::remove_all(temporary);
-      write_file(temporary / "plant.json", plant_json(row));
-      put_in_place(temporary, folder);
-    } catch (const std::exception&) {  // without effect on the row, which is returned in any case
-    }
-    return FleetOutcome{row, false};
-  };
   try {
     check_ours(folder);
     Loaded l = load(fleet, plant);
@@ -220,7 +209,15 @@ FleetOutcome diagnose_plant(const Fleet& fleet, const FleetPlant& plant, const f
     put_in_place(temporary, folder);
     return o;
   } catch (const std::exception& error) {  // including internal errors, so that the other plants continue
-    return failed(error.what());
+    const FleetRow row = fleet::failed_row(plant.name, error.what());
+    try {  // results of an earlier run with other inputs must not remain
+      check_ours(folder);
+      fs::remove_all(temporary);
+      write_file(temporary / "plant.json", plant_json(row));
+      put_in_place(temporary, folder);
+    } catch (const std::exception&) {  // without effect on the row, which is returned in any case
+    }
+    return {row, false};
   }
 }
 
