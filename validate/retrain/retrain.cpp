@@ -54,9 +54,9 @@ std::vector<RetrainedParameter> parameters_of(const std::array<calibrate::Networ
 }
 
 double estimate_of(const calibrate::NetworkEstimate& e, std::size_t record, const std::string& full) {
-  for (std::size_t i = 0; i < e.parameters.size(); ++i)
-    if (e.parameters[i].full() == full) return e.records[record].values[i];
-  return std::numeric_limits<double>::quiet_NaN();
+  const auto* p = find(e, full);
+  return p ? e.records[record].values[static_cast<std::size_t>(p - e.parameters.data())]
+           : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Returns the model with a network's estimates, averaged over the fitted events.
