@@ -250,8 +250,8 @@ fit::Fit with_errors(const BaseModel& base_model, const Hypothesis& h, const fit
 
 void fit_alone(const BaseModel& base_model, Judgement& j) {
   const auto free = free_of(j.hypothesis, base_model.prior_sd);
-  const fit::FitOptions o{.lenient = true, .start = states_of(base_model.fit.events)};
-  j.fit = fit_at(base_model, j.hypothesis.under_test(), free, o);
+  j.fit = fit_at(base_model, j.hypothesis.under_test(), free,
+                 fit::continued({.lenient = true}, base_model.fit, {}));
   j.fitted = j.fit.failed.empty();
   if (j.fitted) j.gain = fit::gain(base_model.fit, j.fit, fit::criterion);
 }
@@ -259,13 +259,12 @@ void fit_alone(const BaseModel& base_model, Judgement& j) {
 fit::Fit fit_from(const BaseModel& base_model, const Hypothesis& h, const fit::Fit& other,
                   const sim::plant::Plant& start) {
   const auto free = free_of(h, base_model.prior_sd);
-  fit::FitOptions o{.lenient = true};
+  fit::FitOptions o = fit::continued({.lenient = true}, other, {});
   for (const fit::FreeParameter& f : free) {
     const auto id = sim::plant::same_parameter(other.plant, h.plant, f.id);
     o.values.push_back(id ? sim::plant::parameter_value(other.plant, *id)
                           : sim::plant::parameter_value(start, f.id));
   }
-  o.start = states_of(other.events);
   return fit::fit(h.under_test(), base_model.events, free, o);
 }
 

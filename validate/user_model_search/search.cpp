@@ -133,10 +133,8 @@ class Searcher {
       h.free.push_back({{block, static_cast<int>(i)}, kRegressionPriorSd});
     h.starts = {f.effect->default_parameters()};
     const auto free = hypothesis::free_of(h, case_.trial.prior_sd);
-    fit::FitOptions o;
-    o.iterations = 10;
+    fit::FitOptions o = fit::continued({.iterations = 10}, input_.fit, {});
     o.values = values_in(input_.fit.plant, {f.effect.get(), h.starts.front()}, block, free);
-    o.start = states_of(input_.fit.events);
     fit::Fit found = fit::fit(h.under_test(), case_.trial.events, free, o);
     if (!found.failed.empty()) return f;
     f.judgement.fit = std::move(found);

@@ -28,16 +28,14 @@ std::string wrong_names(const Diagnosis& d) {
   for (const auto& w : d.wrong->wrong) names += (names.empty() ? "" : ", ") + w.fit.full_name();
   return names;
 }
-/// Returns for example "nothing missing, but wrong: GENROU.H, SEXS.K".
-std::string wrong_name(const Diagnosis& d) {
-  return fmt::format("{}, but wrong: {}", hypothesis::kNothingMissing, wrong_names(d));
-}
 /// Computes the probabilities of the explanations: the given model, the given model with a few wrong
 /// parameters, every accepted effect, every fitted effect whose evidence is below the threshold of
 /// acceptance, and none of these.
 void weigh(Diagnosis& d) {
   std::vector<hypothesis::Explanation> all = {{hypothesis::kNothingMissing}};
-  if (d.wrong) all.push_back({wrong_name(d), d.wrong_evidence});
+  if (d.wrong)
+    all.push_back(
+        {fmt::format("{}, but wrong: {}", hypothesis::kNothingMissing, wrong_names(d)), d.wrong_evidence});
   for (std::size_t k = 0; k < d.ranked.size(); ++k)
     if (const hypothesis::Judgement& j = d.ranked[k];
         j.accepted || (j.fitted && j.fit.failed.empty() && j.gain < thresholds::evidence.accepted.value))

@@ -9,10 +9,6 @@
 namespace swingbank::validate::user_model_search {
 namespace {
 
-std::string_view kind_word(fit::InputKind kind) {
-  return kind == fit::InputKind::torque ? "torque" : "field voltage";
-}
-
 std::string in_quotes(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -78,7 +74,7 @@ std::string user_model_words(const UserModelCandidate& user_model,
     for (auto at = text.find(place); at != std::string::npos; at = text.find(place))
       text.replace(at, place.size(), value_words(p, fitted));
   }
-  return fmt::format("a {} {}{}", kind_word(user_model.kind),
+  return fmt::format("a {} {}{}", user_model.kind == fit::InputKind::torque ? "torque" : "field voltage",
                      text.starts_with("a ") || text.starts_with("an ") ? "in the form of " : "of ", text);
 }
 
