@@ -18,9 +18,7 @@ void fit_base(const plant::PlantModel& model, const DiagnoseOptions& options, fi
 
 /// Returns a start from which the given model fits much better than in `d`; empty if none is found. First
 /// tries the fits of the leading hypotheses, which may have escaped from a poor local optimum. Then, if an
-/// inferred input explains more than any hypothesis, tries the best change of a single parameter. A limit
-/// that is never reached may be wrong, and a fit cannot correct it because the gradient with respect to the
-/// limit is zero.
+/// inferred input explains more than any hypothesis, tries the best change of a single parameter.
 std::optional<fit::FitOptions> better_start(const hypothesis::BaseModel& base_model, const Diagnosis& d);
 
 }  // namespace swingbank::validate::diagnose
