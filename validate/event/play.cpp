@@ -15,6 +15,12 @@ InputError playback_failure(const std::string& record, const std::string& why) {
                      "check the model's parameters and the record's base and units"});
 }
 
+EventState prepared_state(const FitEvent& event) {
+  EventState state;
+  for (const switching::Switching& s : event.switchings) state.switchings.push_back(s.time);
+  return state;
+}
+
 std::vector<switching::Switching> switchings_at(const FitEvent& event, const EventState& state) {
   auto switchings = event.switchings;
   for (std::size_t k = 0; k < state.switchings.size(); ++k) switchings[k].time = state.switchings[k];

@@ -54,6 +54,8 @@ struct Playing {
 /// Error of a record whose playback fails for the reason `why`.
 InputError playback_failure(const std::string& record, const std::string& why);
 
+/// Returns the event's own state: its switching times, without offsets.
+EventState prepared_state(const FitEvent& event);
 /// Returns the event's switchings with the times and phase jumps of `state`.
 std::vector<switching::Switching> switchings_at(const FitEvent& event, const EventState& state);
 /// Returns the operating point with the offsets of `state`.

@@ -70,8 +70,7 @@ class Inferring {
     }
     for (std::size_t e = 0; e < events_.size(); ++e) {
       event::EventState s = states.empty() ? event::EventState{} : states[e];
-      if (s.switchings.empty())
-        for (const auto& w : events_[e].switchings) s.switchings.push_back(w.time);
+      if (s.switchings.empty()) s.switchings = event::prepared_state(events_[e]).switchings;
       const auto numbers = fit::state_of(events_[e], s);
       at_.states.emplace_back(Eigen::Map<const VectorXd>(numbers.data(), static_cast<Index>(numbers.size())));
       knots_.push_back(knots_of(events_[e], s));

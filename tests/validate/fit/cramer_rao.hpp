@@ -24,8 +24,7 @@ inline std::vector<double> cramer_rao(const sim::plant::PlantUnderTest& truth,
     if (const double prior_sd = free[static_cast<std::size_t>(i)].prior_sd; prior_sd > 0)
       information(i, i) = 1 / (prior_sd * prior_sd);
   for (const event::FitEvent& e : events) {
-    event::EventState found;
-    for (const auto& s : e.switchings) found.switchings.push_back(s.time);
+    const event::EventState found = event::prepared_state(e);
     const auto response = [&](const sim::plant::Plant& plant, const event::EventState& at) {
       const playin::Response r =
           event::play({plant, truth.conventions}, e, at, {}, {.tolerance = 1e-8, .hasty = false});

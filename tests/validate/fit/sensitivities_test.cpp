@@ -31,8 +31,7 @@ struct EventSensitivitiesTest : ::testing::TestWithParam<const char*> {
     constexpr double kStep = 1e-3;
     const auto at = [&](double step) {
       sim::plant::Plant plant = model.plant;
-      EventState state;
-      for (const auto& s : event.switchings) state.switchings.push_back(s.time);
+      EventState state = event::prepared_state(event);
       move(plant, state, step);
       return whitened(plant, state);
     };

@@ -13,8 +13,7 @@ namespace {
 TEST(OpenLoop, ReproducesTheClosedLoopResponse) {
   const fit::ExciterExample example(0.2);
   const event::FitEvent& e = example.events.front();
-  event::EventState state;
-  for (const auto& s : e.switchings) state.switchings.push_back(s.time);
+  const event::EventState state = event::prepared_state(e);
   const SeenAlong run = event::seen_along(example.model.under_test(), e, state, OpenLoop::looks(e.record.t));
   const std::vector<Seen>& seen = run.seen;
   const OpenLoop loop(run, e.record.t, example.model.conventions);

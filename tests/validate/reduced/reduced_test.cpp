@@ -128,10 +128,7 @@ TEST_F(Reduced, CostOfAWholePlantEqualsItsResidual) {
   for (const auto& h : hypothesis::all_hypotheses(model_->under_test(), model_->library)) {
     if (h.name != "SEXS") continue;
     std::vector<event::EventState> states;
-    for (const auto& e : *events_) {
-      states.emplace_back();
-      for (const auto& w : e.switchings) states.back().switchings.push_back(w.time);
-    }
+    for (const auto& e : *events_) states.push_back(event::prepared_state(e));
     const Reduction about(linear_about(h.plant, model_->under_test(), *events_,
                                        fit::free_parameters(model_->plant, 0.3), states, {.field = true}, 1),
                           *events_, model_->conventions);

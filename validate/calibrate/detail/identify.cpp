@@ -79,12 +79,6 @@ event::FitEvent voltage_rise(const event::FitEvent& like) {
       .with([end](double t) { return t <= kAt || t > end ? 1.0 : 1.15; }, [](double) { return 0.0; });
 }
 
-fit::EventState at_rest(const event::FitEvent& event) {
-  fit::EventState state;
-  for (const auto& s : event.switchings) state.switchings.push_back(s.time);
-  return state;
-}
-
 /// Returns the event with the channels speed, Efd and Ifd in place of the recorded ones.
 event::FitEvent inner_channels(event::FitEvent event) {
   event.channels = {playin::Output::speed, playin::Output::Efd, playin::Output::Ifd};
@@ -152,7 +146,7 @@ std::vector<TriedEvent> try_events(const sim::plant::PlantUnderTest& tested,
            std::pair{fmt::format("a load rejection (V up by 15 %, to {:.2f} pu, for 3 s)", 1.15 * V),
                      voltage_rise(like)},
        })
-    attempt(what, event, at_rest(event));
+    attempt(what, event, event::prepared_state(event));
   if (std::ranges::count(like.channels, playin::Output::Ifd) == 0) {
     TriedEvent inner{"the same events with speed, Efd and Ifd recorded", {}};
     inner.information =

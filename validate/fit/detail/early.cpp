@@ -23,12 +23,6 @@ bool is_open(const event::FitEvent& e) {
          std::ranges::any_of(e.switchings, [](const switching::Switching& s) { return s.uncertainty > 0; });
 }
 
-EventState as_prepared(const event::FitEvent& e) {
-  EventState state;
-  for (const switching::Switching& s : e.switchings) state.switchings.push_back(s.time);
-  return state;
-}
-
 double end_of_first_part(const event::FitEvent& e) { return e.switchings.back().time + kFirstPart; }
 
 /// Returns the event up to `until`, with white noise.
@@ -76,7 +70,7 @@ std::optional<EventState> early_state(const sim::plant::PlantUnderTest& tested,
   o.brief = true;
   o.steady_start = true;
   o.errors = false;
-  o.start = {as_prepared(e)};
+  o.start = {event::prepared_state(e)};
   const Fit f = fit(tested, first_part(whole, until), {}, o);
   if (!f.failed.empty()) return std::nullopt;
   const EventState& state = f.events.front().state;
@@ -89,7 +83,7 @@ std::optional<EventState> early_state(const sim::plant::PlantUnderTest& tested,
 std::vector<EventState> early_states(const sim::plant::PlantUnderTest& tested,
                                      const noise::WhitenedEvents& events, const FitOptions& options) {
   std::vector<EventState> states;
-  for (const event::FitEvent& e : events) states.push_back(as_prepared(e));
+  for (const event::FitEvent& e : events) states.push_back(event::prepared_state(e));
   bool any = false;
   try {
     for (std::size_t e = 0; e < events.size(); ++e)
