@@ -72,7 +72,7 @@ Record record_of_test(const Test& t, const plant::PlantModel& model, Record r) {
 /// Returns 1 for each sample that is lost or outside all windows, otherwise 0.
 std::vector<char> outside_windows(const Record& r, const std::vector<compare::Window>& windows) {
   std::vector<char> out(r.t.size(), 0);
-  const double slack = 1e-4 * r.step();
+  const double slack = r.time_slack();
   for (std::size_t k = 0; k < out.size(); ++k)
     out[k] = (!r.lost.empty() && r.lost[k]) || std::ranges::none_of(windows, [&](const compare::Window& w) {
                return r.t[k] >= w.from - slack && r.t[k] <= w.to + slack;

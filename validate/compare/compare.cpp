@@ -315,7 +315,7 @@ std::vector<Window> event_windows(const record::Record& record,
                                   const std::vector<switching::Switching>& switchings, double pre_event,
                                   const std::vector<char>& left_out) {
   const auto out = [&](std::size_t k) { return !left_out.empty() && left_out[k]; };
-  const double first = record.t.front(), end = record.t.back(), slack = 1e-4 * record.step();
+  const double first = record.t.front(), end = record.t.back(), slack = record.time_slack();
   const bool switched = !switchings.empty();
   const double staged = std::min(record.first_staged(), end);
   const bool moved = record.first_staged() < end;

@@ -20,7 +20,7 @@ using thresholds::Phase;
 class Phases {
  public:
   Phases(const EventComparison& e, const thresholds::Acceptance& by) : e_(e) {
-    const double slack = 1e-4 * e.record.step();
+    const double slack = e.record.time_slack();
     const bool switched = !e.switchings.empty();
     begins_ = slack + (switched ? e.switchings.front().time : e.windows.front().to);
     over_ = slack + (switched ? e.switchings.back().time : e.windows.front().to);

@@ -21,10 +21,8 @@ namespace {
 using sim::D8;
 using Kind = SensitivityParameter::Kind;
 
-constexpr double kRoughFrom = 1e-5;     ///< tolerance from which the 3(2) pair is used
-constexpr double kShortestStep = 1e-9;  ///< [s]
-constexpr double kCornerError = 1e-6;   ///< accepted error of a state in a step across a corner
-constexpr double kTimeError = 1e-8;     ///< accuracy of the time at which the equations are discontinuous [s]
+constexpr double kCornerError = 1e-6;  ///< accepted error of a state in a step across a corner
+constexpr double kTimeError = 1e-8;    ///< accuracy of the time at which the equations are discontinuous [s]
 constexpr double kRateOver = 1e-6;  ///< interval of the difference that gives a guard's rate at its zero [s]
 
 template <class T>
@@ -53,8 +51,7 @@ class Solver {
     for (auto& values : back.value) values.reserve(r.t.size());
     for (auto& sensitivity : back.sensitivities)
       for (auto& values : sensitivity.value) values.reserve(r.t.size());
-    const double slack =
-        1e-4 * r.step();  // as in VoltageCurve: a sample at a switching time is the value before it
+    const double slack = r.time_slack();
     t_ = r.t.front();
     for (const double sample : r.t) {
       if (sample > run_.until) break;
@@ -183,7 +180,7 @@ class Solver {
       } else if (h < kShortestStep) {
         give_up();
       }
-      h_ = next_step(h_, h, error, grown(error + 1e-12, pair_.exponent), reaches);
+      h_ = next_step(h_, h, error, rough_power(error, pair_), reaches);
       if (++steps_ > run_.step_limit) give_up();
     }
     t_ = std::max(t_, to);
@@ -281,9 +278,6 @@ class Solver {
   [[nodiscard]] bool crosses_corner(double h, double error) const {
     return h < kShortestStep && error * run_.tolerance < kCornerError;
   }
-  static double grown(double error, double exponent) {
-    return sim::plant::dp54::rough_power(static_cast<float>(error), static_cast<float>(exponent));
-  }
   /// Evaluates k_[0] and the signals at the present states.
   void refresh() {
     if (fresh_) {
@@ -371,7 +365,7 @@ class Solver {
   }
 
   const PlaybackRun& run_;
-  const Pair& pair_ = run_.tolerance < kRoughFrom ? kFineSteps : kRoughSteps;
+  const Pair& pair_ = run_.tolerance < kRoughTolerance ? kFineSteps : kRoughSteps;
   bool fresh_ = true;  ///< k_[0] must be evaluated again
   std::span<const SensitivityParameter> parameters_;
   PlaybackEquations<T> equations_;

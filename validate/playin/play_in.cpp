@@ -104,7 +104,7 @@ OperatingPoint pre_event_point(const record::Record& record, const std::vector<S
     until = switchings.empty() ? staged : std::min(until, staged);
   OperatingPoint point;
   while (point.samples < record.samples() &&
-         record.t[static_cast<std::size_t>(point.samples)] <= until + 1e-4 * record.step())
+         record.t[static_cast<std::size_t>(point.samples)] <= until + record.time_slack())
     ++point.samples;
   const int n = point.samples;
   if (n < kMinSteady)

@@ -16,7 +16,6 @@ namespace {
 using sim::P8;
 
 constexpr auto kTogether = std::size_t(P8::lanes);
-constexpr double kLeastOfAll = 1e-9;  ///< smallest step; a run that needs a shorter one is abandoned [s]
 constexpr int kStepsOfAll =
     3;  ///< ratio of the batch's step limit to that of one plant; common steps are shorter
 
@@ -43,8 +42,7 @@ class Together {
     const auto& switchings = runs_.front().curve->switchings();
     for (auto& response : responses_)
       for (auto& values : response.value) values.reserve(r.t.size());
-    const double slack =
-        1e-4 * r.step();  // as in VoltageCurve: a sample at a switching time is the value before it
+    const double slack = r.time_slack();
     t_ = r.t.front();
     for (const double sample : r.t) {
       if (sample > runs_.front().until) break;
@@ -114,12 +112,8 @@ class Together {
         equations_.of_plant().clamp_states(equations_.c.data(), x_.data(), moved);
         fresh_ = any_positive(moved);
       }
-      if (error > 1 ? h < kLeastOfAll : ++steps_ > kStepsOfAll * runs_.front().step_limit) give_up_worst();
-      const double factor =
-          std::clamp(0.9 * sim::plant::dp54::rough_power(static_cast<float>(error + 1e-12),
-                                                         static_cast<float>(kRoughSteps.exponent)),
-                     0.2, 5.0);
-      h_ = reaches && error <= 1 ? std::max(h_, h * factor) : h * factor;
+      if (error > 1 ? h < kShortestStep : ++steps_ > kStepsOfAll * runs_.front().step_limit) give_up_worst();
+      h_ = next_step(h_, h, error, rough_power(error, kRoughSteps), reaches);
     }
     t_ = std::max(t_, to);
   }
@@ -198,7 +192,6 @@ class Together {
 
 /// Returns whether the run can share its steps with other runs of a batch.
 bool can_go_together(const PlaybackRun& run) {
-  constexpr double kRoughTolerance = 1e-5;
   return run.tolerance >= kRoughTolerance && !is_recorded(*run.plant) && !run.given && run.torque.t.empty() &&
          run.field.t.empty() && run.record->staged.empty() && !run.record->breaker() &&
          !run.record->open_circuit() && sim::plant::switching_times_of(*run.plant).empty();

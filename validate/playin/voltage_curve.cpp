@@ -10,8 +10,6 @@
 namespace swingbank::validate::playin {
 namespace {
 
-constexpr double kStampRounding = 1e-4;  ///< rounding of times with 6 decimals, relative to a sample interval
-
 Complex phasor(const record::Record& r, std::size_t k) { return std::polar(r.V[k], r.theta[k]); }
 
 /// Returns the second derivatives of the not-a-knot cubic spline through n >= 4 knots. Its third derivative
@@ -51,7 +49,7 @@ std::vector<Complex> not_a_knot(const std::vector<double>& t, const std::vector<
 VoltageCurve::VoltageCurve(const record::Record& record, std::vector<Switching> switchings)
     : switchings_(std::move(switchings)) {
   std::ranges::sort(switchings_, {}, &Switching::time);
-  const double slack = kStampRounding * record.step();
+  const double slack = record.time_slack();
   last_ = record.t.back();
   Problems problems;
   for (const Switching& s : switchings_)
@@ -89,7 +87,7 @@ VoltageCurve::VoltageCurve(const record::Record& record, std::vector<Switching> 
 }
 
 VoltageCurve VoltageCurve::moved(const record::Record& record, std::vector<Switching> switchings) const {
-  const double slack = kStampRounding * record.step();
+  const double slack = record.time_slack();
   std::ranges::sort(switchings, {}, &Switching::time);
   bool same = switchings.size() == switchings_.size();
   for (std::size_t s = 0; same && s < switchings.size(); ++s) {

@@ -137,7 +137,7 @@ Record read_staged(const Source& source, const RecordBase& base, ReadOptions opt
 }
 
 Record stretch(Record r, double from, double until) {
-  const double slack = 1e-4 * r.step();
+  const double slack = r.time_slack();
   const auto first = static_cast<std::size_t>(std::ranges::lower_bound(r.t, from - slack) - r.t.begin());
   const auto last = static_cast<std::size_t>(std::ranges::upper_bound(r.t, until + slack) - r.t.begin());
   if (first == 0 && last == r.t.size()) return r;

@@ -112,6 +112,9 @@ struct Record {
   [[nodiscard]] int samples() const { return static_cast<int>(t.size()); }
   /// Returns the sample interval [s].
   [[nodiscard]] double step() const { return (t.back() - t.front()) / static_cast<double>(t.size() - 1); }
+  /// Returns the tolerance of comparisons with sample times [s], for times with 6 decimals. A sample at a
+  /// switching time within it has the value before the switching.
+  [[nodiscard]] double time_slack() const { return 1e-4 * step(); }
   /// Returns the sampling rate [1/s].
   [[nodiscard]] double rate() const { return 1.0 / step(); }
 };

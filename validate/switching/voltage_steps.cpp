@@ -246,7 +246,7 @@ StepShape VoltageSteps::shape_of_first(const std::vector<Switching>& found, doub
 bool VoltageSteps::moves_before_given(double threshold) const {
   constexpr double kBegins = 0.03;
   const record::Record& r = *record_;
-  const double last = r.switched.front() + 1e-4 * r.step();  // a sample at this time holds the value before
+  const double last = r.switched.front() + r.time_slack();
   const auto k = static_cast<std::size_t>(std::ranges::upper_bound(r.t, last) - r.t.begin());
   if (k < 2 || k >= r.t.size()) return false;
   return std::abs(step_[k - 2]) > std::max(threshold / 2, kBegins * std::abs(step_[k - 1]));

@@ -73,7 +73,7 @@ class Comparer {
     if (const auto doubt = clock_doubt(t.record, out_.switching_times); !doubt.empty())
       e.notes.push_back(doubt);
     leave_out_filtered(e, filter_reach);
-    const double begins = out_.switching_times.front() - filter_reach + 1e-4 * t.record.step();
+    const double begins = out_.switching_times.front() - filter_reach + t.record.time_slack();
     e.playback.start.samples =
         static_cast<int>(std::ranges::upper_bound(t.record.t, begins) - t.record.t.begin());
     if (e.playback.start.samples < kMinQuiet)

@@ -22,7 +22,13 @@ inline constexpr double kRoughA[4][6] = {{}, {1.0 / 2}, {0.0, 3.0 / 4}, {2.0 / 9
 inline constexpr double kRoughC[4] = {0.0, 1.0 / 2, 3.0 / 4, 1.0};
 inline constexpr double kRoughError[4] = {2.0 / 9 - 7.0 / 24, 1.0 / 3 - 1.0 / 4, 4.0 / 9 - 1.0 / 3, -1.0 / 8};
 inline constexpr Pair kRoughSteps{4, -1.0 / 3, kRoughA, kRoughC, kRoughError};
+inline constexpr double kRoughTolerance = 1e-5;  ///< tolerance from which kRoughSteps is used
+inline constexpr double kShortestStep = 1e-9;    ///< a run that needs a shorter step fails [s]
 
+/// Returns the power of an error for next_step(), approximately.
+inline double rough_power(double error, const Pair& pair) {
+  return sim::plant::dp54::rough_power(static_cast<float>(error + 1e-12), static_cast<float>(pair.exponent));
+}
 /// Returns the length of the next step after an attempt of length h [s]. `error`: error of the attempt
 /// relative to the tolerance; `power`: this error raised to Pair::exponent. A step that ended early at a
 /// target time (`reaches`) does not shorten `longest`, the length planned before the attempt.

@@ -39,8 +39,7 @@ class PowerPlayback {
 
   PowerResponse run() {
     const record::Record& r = *run_.record;
-    const double slack =
-        1e-4 * r.step();  // as in VoltageCurve: a sample at a switching time is the value before it
+    const double slack = r.time_slack();
     t_ = r.t.front();
     for (const double sample : r.t) {
       while (next_ < times_.size() && sample > times_[next_].time + slack) {
@@ -144,7 +143,7 @@ class PowerPlayback {
         std::swap(x_, trial_);
         double moved = 0;
         equations_.clamp_states(c_.data(), x_.data(), moved);
-      } else if (h < 1e-9) {
+      } else if (h < kShortestStep) {
         give_up();
       }
       h_ = next_step(h_, h, error, std::pow(error + 1e-12, kFineSteps.exponent), reaches);
