@@ -22,7 +22,7 @@ std::vector<playin::SensitivityParameter> own_parameters(const event::FitEvent& 
   for (std::size_t k = 0; event.turns() && k < event.switchings.size(); ++k)
     along.push_back({.kind = Kind::turn, .index = static_cast<int>(k), .scale = kTurnScale * kTurnPrior});
   for (std::size_t k = 0; k < std::size(kStateKind); ++k)
-    along.push_back({.kind = kStateKind[k], .scale = kStatePriorSd[k]});
+    along.push_back({.kind = kStateKind[k], .scale = kStateScale[k] * kStatePrior});
   return along;
 }
 
@@ -38,7 +38,8 @@ Eigen::VectorXd in_parameter_units(const event::FitEvent& event, const EventStat
                       ? (state.turns[k] - event.switchings[k].turn) / (kTurnScale * kTurnPrior)
                       : 0.0);
   const double values[kStates] = {state.P, state.Q, state.angle, state.speed};
-  for (std::size_t k = 0; k < std::size(kStateKind); ++k) all.push_back(values[k] / kStatePriorSd[k]);
+  for (std::size_t k = 0; k < std::size(kStateKind); ++k)
+    all.push_back(values[k] / (kStateScale[k] * kStatePrior));
   return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 

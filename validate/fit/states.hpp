@@ -29,21 +29,15 @@ inline constexpr std::array<playin::SensitivityParameter::Kind, kStates> kStateK
 /// Unit of each initial state in the search. It is far below observable changes and far above rounding
 /// errors.
 inline constexpr std::array<double, kStates> kStateScale = {1e-3, 1e-3, 1e-3, 1e-5};
-/// Prior standard deviation of the initial state, in units of kStateScale. It is small, because a plant is
-/// nearly in steady state before an event.
-inline constexpr std::array<double, kStates> kStatePrior = {20, 20, 20, 20};
-/// Prior standard deviation of the initial state in physical units.
-inline constexpr std::array<double, kStates> kStatePriorSd = [] {
-  std::array<double, kStates> prior_sd{};
-  for (std::size_t k = 0; k < kStates; ++k) prior_sd[k] = kStateScale[k] * kStatePrior[k];
-  return prior_sd;
-}();
+/// Prior standard deviation of each initial state [kStateScale]. It is small, because a plant is nearly in
+/// steady state before an event.
+inline constexpr double kStatePrior = 20;
 
 /// Returns the prior standard deviation of each state variable, in units of the search; 0: no prior.
 inline std::vector<double> state_priors(const event::FitEvent& event) {
   std::vector<double> all(event.switchings.size(), 0.0);
   all.resize(switching_numbers(event), kTurnPrior);
-  all.insert(all.end(), kStatePrior.begin(), kStatePrior.end());
+  all.insert(all.end(), kStates, kStatePrior);
   return all;
 }
 
