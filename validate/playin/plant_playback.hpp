@@ -26,13 +26,9 @@ struct OperatingPoint {
 
 /// Piecewise linear function of time through (t[k], value[k]), zero outside.
 struct PiecewiseLinear {
-  std::vector<double> t, value;  ///< t [s], increasing
-  std::vector<double> knots =
-      {};  ///< knots of the hat functions that are its sensitivity parameters [s]; empty: t
+  std::vector<double> t, value;  ///< t [s], increasing; the knots of the hat functions (sensitivities)
   /// Returns the value at time `at` [s].
   [[nodiscard]] double operator()(double at) const;
-  /// Returns the knots of the hat functions [s].
-  [[nodiscard]] const std::vector<double>& hats() const { return knots.empty() ? t : knots; }
 };
 
 /// Outputs of the plant at each sample of the record.

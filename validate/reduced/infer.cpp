@@ -110,7 +110,6 @@ class Inferring {
     Inference found;
     found.inputs = inputs_;
     found.criterion = cost + step_of(normal_of(sensitivities)).log_determinant - log_prior(intensity_);
-    found.intensity = intensity_;
     found.base = tested_.plant;
     for (std::size_t i = 0; i < axes_.size(); ++i)
       parameter_value(found.base, free_[i].id) = axes_[i].value(at_.z[static_cast<Index>(i)]);

@@ -51,7 +51,6 @@ struct Inference {
   double chi2 = 0;                         ///< sum of squared whitened residuals
   /// -2 log evidence by Laplace's approximation, up to a constant common to all inferences of these events.
   double criterion = 0;
-  double intensity = 1.0;     ///< factor on the prior variance of the inputs' random walk [-]
   int values = 0, steps = 0;  ///< number of compared values; number of Gauss-Newton steps
   /// Returns the reduced chi-square: chi2 divided by the number of compared values [-].
   [[nodiscard]] double reduced_chi2() const { return chi2 / values; }
@@ -86,9 +85,9 @@ Inference infer(const sim::plant::PlantUnderTest& tested, const noise::WhitenedE
                 const std::vector<fit::FreeParameter>& free, Inputs inputs, int threads,
                 int steps = kInferenceSteps);
 
-/// Two inferences: at the prior intensity of the inputs' random walk (Inference::intensity = 1), and at the
-/// most probable intensity. The second starts from the first. Its intensity is small if the records require
-/// no input.
+/// Two inferences: at the prior intensity of the inputs' random walk (variance as in walk_weights()), and at
+/// the most probable intensity. The second starts from the first. Its intensity is small if the records
+/// require no input.
 struct SmoothInference {
   Inference prior, smooth;  ///< at the prior intensity, and at the most probable one
 };

@@ -23,8 +23,6 @@ class Reduction {
 
   /// Returns the inference that is reduced.
   [[nodiscard]] const Inference& inference() const { return inference_; }
-  /// Returns the conventions of the plant.
-  [[nodiscard]] const sim::Conventions& conventions() const { return conventions_; }
   /// One reduced event.
   struct Event {
     playin::OpenLoop loop;  ///< open loop of the plant's controls

@@ -78,7 +78,7 @@ class LinearSensitivities {
     for (std::size_t d = 0; d < m_; ++d) {
       double begin = -std::numeric_limits<double>::infinity();
       if (is_input(parameters_[d])) {
-        const auto& knots = input_of(parameters_[d].kind).hats();
+        const auto& knots = input_of(parameters_[d].kind).t;
         const auto index = static_cast<std::size_t>(parameters_[d].index);
         begin = knots[std::max<std::size_t>(index, 1) - 1];
         auto& hats = hats_[parameters_[d].kind == Kind::torque ? 0 : 1];
@@ -280,7 +280,7 @@ class LinearSensitivities {
     for (const Kind kind : {Kind::torque, Kind::field}) {
       const auto& hats = hats_[kind == Kind::torque ? 0 : 1];
       if (hats.empty()) continue;
-      const auto& knots = input_of(kind).hats();
+      const auto& knots = input_of(kind).t;
       const auto behind = static_cast<std::size_t>(std::ranges::upper_bound(knots, t) - knots.begin());
       for (std::size_t k = std::max<std::size_t>(behind, 1) - 1; k < std::min(behind + 1, knots.size()); ++k)
         if (const double height = hat(knots, k, t); hats[k] < m_ && height != 0.0) {

@@ -255,7 +255,7 @@ class PlaybackEquations {
     T value(input(t));
     each([&](const SensitivityParameter& d, std::size_t i) {
       if (d.kind == kind)
-        Seeds<T>::add(value, i, d.scale * hat(input.hats(), static_cast<std::size_t>(d.index), t));
+        Seeds<T>::add(value, i, d.scale * hat(input.t, static_cast<std::size_t>(d.index), t));
     });
     return value;
   }
