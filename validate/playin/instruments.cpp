@@ -11,9 +11,6 @@ namespace {
 
 using Kind = SensitivityParameter::Kind;
 
-/// Oversampling of the response for instruments with memory. At the record's own rate, a step of the response
-/// would extend over a whole sample interval before it is filtered.
-constexpr int kFine = 8;
 /// Step of a parameter for central differences, as a fraction of its range. The result hardly depends on this
 /// step.
 constexpr double kMove = 1e-5;
@@ -169,14 +166,15 @@ class Observed {
     return sensitivity;
   }
   void refine(const record::Record& r) {
-    stride_ = kFine;
+    stride_ = kOversampling;
     fine_.name = r.name;
     fine_.base = r.base;
     for (std::size_t k = 0; k + 1 < r.t.size(); ++k)
-      for (int i = 0; i < kFine; ++i) fine_.t.push_back(r.t[k] + (r.t[k + 1] - r.t[k]) * i / kFine);
+      for (int i = 0; i < kOversampling; ++i)
+        fine_.t.push_back(r.t[k] + (r.t[k + 1] - r.t[k]) * i / kOversampling);
     fine_.t.push_back(r.t.back());
     inner_.record = &fine_;
-    inner_.step_limit = run_.step_limit * kFine;
+    inner_.step_limit = run_.step_limit * kOversampling;
   }
   /// Converts the sensitivities to the plant's initial P and Q into sensitivities to the measured initial P
   /// and Q.

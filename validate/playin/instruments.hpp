@@ -5,6 +5,10 @@
 
 namespace swingbank::validate::playin {
 
+/// Oversampling factor of a response for instruments with memory (filters). At the record's own rate, a step
+/// of the response would extend over a whole sample interval before it is filtered.
+inline constexpr int kOversampling = 8;
+
 /// Runs simulate_playback() with instruments, whose chain must be linear. Their influence on a constant
 /// phasor is removed from the played-in voltage and from the operating point. Their filtering of a changing
 /// phasor is not removed. Instead, fits exclude the samples within the filter window around a step

@@ -9,13 +9,13 @@
 #include "base/problem.hpp"
 #include "sim/plant/equations.hpp"
 #include "validate/playin/component.hpp"
+#include "validate/playin/detail/packed_matrix.hpp"
 #include "validate/playin/detail/recorded.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
 
-using sim::P8;
-constexpr auto kBlockLanes = std::size_t(P8::lanes);
+using sim::P8, by_pack::kLanes;
 
 /// ROS34PW2, a linearly implicit W-method of order 3: any approximation of the Jacobian suffices (J. Rang, L.
 /// Angermann, BIT 45 (2005) 761, table 4). It is L-stable, so a lag much faster than a step ends exactly at
@@ -243,7 +243,7 @@ class BlockBatch {
   std::array<std::vector<P8>, kFormulaStages> u_;
   const std::vector<double>& lengths_;  ///< step lengths [s]
   std::vector<Triangles> triangles_;    ///< LU factors for each step length, empty until needed
-  std::array<char, kBlockLanes> initialised_{};
+  std::array<char, kLanes> initialised_{};
   P8 response_{0.0};
   sim::Signals<P8> signals_;  ///< unwritten signals remain zero
 };
@@ -313,8 +313,8 @@ Eigen::MatrixXd OpenLoop::run(Made made, std::span<const sim::plant::Plant> plan
   Eigen::MatrixXd all = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(times_.size()),
                                                   static_cast<Eigen::Index>(plants.size()),
                                                   std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t first = 0; first < plants.size(); first += kBlockLanes) {
-    const auto some = plants.subspan(first, std::min(kBlockLanes, plants.size() - first));
+  for (std::size_t first = 0; first < plants.size(); first += kLanes) {
+    const auto some = plants.subspan(first, std::min(kLanes, plants.size() - first));
     BlockBatch controls(made, some, steady_, conventions_, lengths_);
     if (!controls.any()) continue;
     const auto keep = [&](std::size_t k) {

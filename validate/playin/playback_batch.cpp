@@ -7,15 +7,15 @@
 #include "base/constants.hpp"
 #include "base/problem.hpp"
 #include "base/stop_signal.hpp"
+#include "validate/playin/detail/packed_matrix.hpp"
 #include "validate/playin/detail/pairs.hpp"
 #include "validate/playin/detail/playback_equations.hpp"
 
 namespace swingbank::validate::playin {
 namespace {
 
-using sim::P8;
+using sim::P8, by_pack::kLanes;
 
-constexpr auto kTogether = std::size_t(P8::lanes);
 constexpr int kStepsOfAll =
     3;  ///< ratio of the batch's step limit to that of one plant; common steps are shorter
 
@@ -178,12 +178,12 @@ class Together {
 
   static constexpr double kNotFinite = 1e30;  ///< error assigned to a step that is not finite [-]
   std::span<const PlaybackRun> runs_;
-  std::array<char, kTogether> alive_{};
+  std::array<char, kLanes> alive_{};
   PlaybackEquations<P8> equations_;
   std::vector<P8> x_, trial_, allowed_;
   std::array<std::vector<P8>, std::size_t(kRoughSteps.stages)> k_;
   P8 errors_{0.0};
-  std::array<Response, kTogether> responses_;
+  std::array<Response, kLanes> responses_;
   bool fresh_ = true;  ///< k_[0] must be evaluated anew
   std::size_t next_ = 0;
   long steps_ = 0;
@@ -209,8 +209,8 @@ std::optional<Response> alone(const PlaybackRun& run) {
 
 std::vector<std::optional<Response>> simulate_playback_batch(std::span<const PlaybackRun> runs) {
   std::vector<std::optional<Response>> all;
-  for (std::size_t first = 0; first < runs.size(); first += kTogether) {
-    const auto some = runs.subspan(first, std::min(kTogether, runs.size() - first));
+  for (std::size_t first = 0; first < runs.size(); first += kLanes) {
+    const auto some = runs.subspan(first, std::min(kLanes, runs.size() - first));
     if (some.size() > 1 && std::ranges::all_of(some, can_go_together)) {
       std::ranges::move(Together(some).run(), std::back_inserter(all));
       continue;

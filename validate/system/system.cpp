@@ -91,7 +91,7 @@ class Comparer {
   /// this distance, an error of the switching time by a fraction of a millisecond would be visible.
   [[nodiscard]] double filter_reach_at(const SystemTerminal& t) const {
     const double memory = sim::plant::memory(t.instruments);
-    return memory > 0 ? memory + 2 * t.record.step() / kFine : undeclared_;
+    return memory > 0 ? memory + 2 * t.record.step() / playin::kOversampling : undeclared_;
   }
   /// Marks samples within `reach` [s] of a switching as not compared.
   void leave_out(compare::EventComparison& e, double reach) const {

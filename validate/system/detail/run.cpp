@@ -11,6 +11,7 @@
 #include "sim/core/window.hpp"
 #include "sim/plant/measure.hpp"
 #include "sim/reference/reference.hpp"
+#include "validate/playin/instruments.hpp"
 
 namespace swingbank::validate::system {
 namespace {
@@ -68,7 +69,7 @@ class Player {
     double memory = 0;
     for (const std::size_t i : members)
       memory = std::max(memory, sim::plant::memory(s_.terminals[i].instruments));
-    const int stride = memory > 0 ? kFine : 1;
+    const int stride = memory > 0 ? playin::kOversampling : 1;
     sim::reference::ReferenceOptions o;
     o.rate = stride / step;
     o.t_end = step * (samples - 1) + memory + 0.01 * step;

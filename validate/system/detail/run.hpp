@@ -21,8 +21,6 @@ struct SystemRun {
   /// End of the simulation on the records' clock [s]; infinite if it reached the end of the records.
   double stopped_at = std::numeric_limits<double>::infinity();
 };
-/// Oversampling factor of the simulation for instruments with memory (filters).
-constexpr int kFine = 8;
 
 /// Simulates the event and applies the terminals' instruments. Throws InputError as run_reference(), if the
 /// integration fails before the end, and if a voltage of zero leaves an instrument's current undefined.
