@@ -5,6 +5,7 @@
 
 #include "sim/library/library.hpp"
 #include "sim/plant/block_text.hpp"
+#include "tests/validate/playin/support.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/playin/play_in.hpp"
 #include "validate/switching/voltage_steps.hpp"
