@@ -1,5 +1,6 @@
 #pragma once
 // Mathematical constants that several modules use.
+#include <limits>
 #include <numbers>
 
 namespace swingbank::constants {
@@ -12,5 +13,8 @@ inline constexpr double degrees_in_radian = 180 / pi;  ///< degrees in one radia
 /// Two-sided 95 % and 99 % quantiles of the standard normal distribution.
 inline constexpr double normal95 = 1.959963984540054;
 inline constexpr double normal99 = 2.5758293035489004;  ///< 99 %
+
+/// Value of a quantity that is unknown (not a number).
+inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace swingbank::constants

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/constants.hpp"
 #include "base/json.hpp"
@@ -17,8 +16,6 @@
 
 namespace swingbank::validate::diagnose {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns the accepted effect, or else the accepted user-defined model; nullptr if there is none.
 const hypothesis::Judgement* accepted_effect(const Diagnosis& d) {
@@ -212,8 +209,8 @@ ReportFigures report_figures(const Diagnosis& d) {
     for (std::size_t c = 0; c < r.event->channels.size(); ++c)
       r.channels.push_back(channel_of(d, figures.after, e, c, r.windows, doubts));
     r.before = std::sqrt(d.base.events[e].reduced_chi2());
-    r.after = figures.after ? std::sqrt(figures.after->events[e].reduced_chi2()) : kNaN;
-    r.unseen_before = r.unseen_after = kNaN;
+    r.after = figures.after ? std::sqrt(figures.after->events[e].reduced_chi2()) : constants::nan;
+    r.unseen_before = r.unseen_after = constants::nan;
     if (best && figures.after == &best->fit && e < best->held_out.size()) {
       r.unseen_before = std::sqrt(best->held_out[e].before);
       r.unseen_after = std::sqrt(best->held_out[e].after);

@@ -1,8 +1,8 @@
 #include "validate/fleet/row.hpp"
 
-#include <limits>
 #include <stdexcept>
 
+#include "base/constants.hpp"
 #include "base/json.hpp"
 #include "base/problem.hpp"
 
@@ -11,10 +11,9 @@ namespace swingbank::validate::fleet {
 using nlohmann::json;
 
 namespace {
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double number_of(const json& j, const char* key) {
-  return j.at(key).is_null() ? kNaN : j.at(key).get<double>();
+  return j.at(key).is_null() ? constants::nan : j.at(key).get<double>();
 }
 
 json error_json(const SubmittedError& e) {
@@ -36,7 +35,8 @@ FleetRow failed_row(const std::string& plant, const std::string& why) {
   row.plant = plant;
   row.verdict = "failed";
   row.side = "none";
-  row.error.percent = row.evidence = row.left = row.unseen_before = row.unseen_after = row.chance = kNaN;
+  row.error.percent = row.evidence = row.left = row.unseen_before = row.unseen_after = row.chance =
+      constants::nan;
   row.sentence = why;
   return row;
 }

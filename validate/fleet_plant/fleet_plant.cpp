@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
-#include <limits>
 
+#include "base/constants.hpp"
 #include "base/json.hpp"
 #include "base/sha256.hpp"
 #include "base/write_file.hpp"
@@ -23,8 +23,6 @@ using fleet::Fleet;
 using fleet::FleetPlant;
 using fleet::FleetRow;
 using nlohmann::json;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Returns the sorted files of a name or glob. The terminal of "RUN.h5#TERMINAL" is appended to each file.
 std::vector<std::string> matching(const std::string& text, const fs::path& folder, Problems& problems) {
@@ -100,7 +98,7 @@ std::string inputs_of(const Loaded& l, const FleetPlant& plant) {
 
 /// Returns the largest error of the submitted model and its verdict on fitness for purpose.
 fleet::SubmittedError submitted_error(const compare::Fitness& f) {
-  fleet::SubmittedError worst{kNaN, {}, {}, {}};
+  fleet::SubmittedError worst{constants::nan, {}, {}, {}};
   if (!f.not_judged.empty()) return worst;
   worst.fit = f.fit ? "yes" : "no";
   for (const auto& row : f.rows)
@@ -121,7 +119,7 @@ FleetRow row_of(const diagnose::Diagnosis& d, const compare::Fitness& submitted)
   row.left = std::sqrt(d.base.reduced_chi2());
   row.events = static_cast<int>(d.events.size());
   row.sentence = d.sentence;
-  row.evidence = row.unseen_before = row.unseen_after = row.chance = kNaN;
+  row.evidence = row.unseen_before = row.unseen_after = row.chance = constants::nan;
   if (d.ranked.empty() || d.verdict == diagnose::Verdict::adequate) return row;
   const hypothesis::Judgement& best = d.ranked.front();
   if (!best.accepted) return row;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -22,7 +21,6 @@
 namespace swingbank::validate::system {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kMinQuiet = 5;  // least number of pre-event samples for the noise
 
 double mean_of(const std::vector<double>& v, std::size_t n) {
@@ -137,7 +135,7 @@ class Comparer {
     const auto reference = static_cast<std::size_t>(std::max(s_.reference, 0));
     const record::Record &r = s_.terminals[i].record, &other = s_.terminals[reference].record;
     const std::string_view skip = gone ? "fault" : "";
-    if (r.angle == record::AngleSource::none) return kNaN;
+    if (r.angle == record::AngleSource::none) return constants::nan;
     const bool by_meter = r.angle == record::AngleSource::integrated;
     if (s_.reference < 0 || i == reference || by_meter) {
       const double nominal = s_.base.frequency;
@@ -147,7 +145,7 @@ class Comparer {
           by_meter ? r.f : compare::frequency_of(r.t, r.theta, nominal),
           compare::frequency_of(r.t, run_.responses[i].theta, nominal));
       e.left_out = compared;
-      return kNaN;
+      return constants::nan;
     }
     if (other.samples() != r.samples() || std::abs(other.t.front() - r.t.front()) > 1e-3 * r.step() ||
         std::abs(other.step() - r.step()) > 1e-6 * r.step())
@@ -168,7 +166,7 @@ class Comparer {
   /// Adds a channel. Returns the model's mean error before the event; NaN if the channel was not measured.
   double add(compare::EventComparison& e, const compare::ChannelRule& rule,
              const std::vector<double>& measured, std::vector<double> modelled) {
-    if (measured.empty()) return kNaN;
+    if (measured.empty()) return constants::nan;
     const auto quiet = static_cast<std::size_t>(e.playback.start.samples);
     const double off = mean_of(modelled, quiet) - mean_of(measured, quiet);
     if (shift())

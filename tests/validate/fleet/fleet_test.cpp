@@ -9,6 +9,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "base/constants.hpp"
 #include "base/json.hpp"
 #include "base/problem.hpp"
 #include "tests/validate/report/browser.hpp"
@@ -20,8 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// A temporary folder for each test.
 class FleetFiles : public ::testing::Test {
@@ -53,7 +52,7 @@ FleetRow row(const std::string& plant, const std::string& verdict) {
   r.side = "none";
   r.left = 1.01;
   r.error = {1.234, "Q", "post-fault", "e1.csv", "yes"};
-  r.evidence = r.unseen_before = r.unseen_after = r.chance = kNaN;
+  r.evidence = r.unseen_before = r.unseen_after = r.chance = constants::nan;
   r.events = 3;
   r.sentence = "A sentence, with a comma.";
   r.inputs = "0123456789abcdef";
@@ -205,7 +204,7 @@ std::vector<FleetRow> hundred() {
     }
     FleetRow r = k % 7 == 0 ? named() : row(name, k % 20 == 9 ? "unexplained" : "adequate");
     r.plant = name;
-    r.error.percent = k % 11 == 0 ? kNaN : (37 * k) % 50;  // some are equal
+    r.error.percent = k % 11 == 0 ? constants::nan : (37 * k) % 50;  // some are equal
     r.left = 1 + k % 3;
     r.error.fit = k % 13 == 0 ? "no" : "yes";
     rows.push_back(r);
