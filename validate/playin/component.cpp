@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "sim/core/literature.hpp"
 #include "sim/plant/equations.hpp"
 #include "sim/plant/parameter_id.hpp"
 #include "validate/playin/detail/recorded.hpp"

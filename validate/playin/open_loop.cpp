@@ -8,7 +8,6 @@
 
 #include "base/problem.hpp"
 #include "sim/plant/equations.hpp"
-#include "validate/playin/component.hpp"
 #include "validate/playin/detail/packed_matrix.hpp"
 #include "validate/playin/detail/recorded.hpp"
 

@@ -8,7 +8,6 @@
 #include <fstream>
 
 #include "tests/validate/playin/support.hpp"
-#include "validate/event/event.hpp"
 #include "validate/plant/plant_file.hpp"
 #include "validate/playin/play_in.hpp"
 #include "validate/switching/voltage_steps.hpp"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "sim/library/library.hpp"
-#include "sim/plant/block_text.hpp"
 #include "tests/validate/playin/support.hpp"
 #include "validate/plant/plant_model.hpp"
 #include "validate/playin/play_in.hpp"

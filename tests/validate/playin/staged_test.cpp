@@ -7,7 +7,6 @@
 
 #include "tests/validate/playin/staged_case.hpp"
 #include "validate/playin/component.hpp"
-#include "validate/playin/given.hpp"
 #include "validate/playin/play_in.hpp"
 
 namespace swingbank::validate::playin {

@@ -3,7 +3,6 @@
 #include <array>
 
 #include "tests/validate/playin/support.hpp"
-#include "validate/event/event.hpp"
 #include "validate/hypothesis/hypothesis.hpp"
 #include "validate/noise/pre_event.hpp"
 #include "validate/plant/plant_model.hpp"

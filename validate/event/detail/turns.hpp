@@ -1,7 +1,7 @@
 #pragma once
 // Phase jumps at switching times, reconstructed for voltage angles integrated from frequency.
 #include "sim/plant/under_test.hpp"
-#include "validate/event/event.hpp"
+#include "validate/event/fit_event.hpp"
 
 namespace swingbank::validate::event {
 
