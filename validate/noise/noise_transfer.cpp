@@ -7,6 +7,12 @@
 #include "validate/noise/slow_noise.hpp"
 
 namespace swingbank::validate::noise {
+namespace {
+
+/// Standard deviations by which the noise variance may exceed its estimate.
+constexpr double kDoubts = 3;
+
+}  // namespace
 
 NoiseTransfer::NoiseTransfer(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events,
                              const VoltageNoise& voltage)
@@ -18,10 +24,11 @@ NoiseTransfer::NoiseTransfer(const sim::plant::PlantUnderTest& tested, const Whi
   for (const event::FitEvent& e : events) values += e.values();
   times_ = values / noisy_.values();
   own_ = chi2_of(tested);
+  scale_ = 1 + kDoubts * (voltage.variance.array() > 0).select(voltage.doubt.array(), 0.0).maxCoeff();
 }
 
 double NoiseTransfer::less_with(const sim::plant::PlantUnderTest& tested) const {
-  const double less = own_ - chi2_of(tested);
+  const double less = scale_ * (own_ - chi2_of(tested));
   return std::isnan(less) ? 0.0 : less;
 }
 

@@ -15,7 +15,8 @@ class NoiseTransfer {
   NoiseTransfer(const sim::plant::PlantUnderTest& tested, const WhitenedEvents& events,
                 const VoltageNoise& voltage);
   /// Returns the reduction of chi2 over all events that results from the lower noise transfer of another
-  /// structure. Negative if its transfer is higher, 0 if it cannot be simulated.
+  /// structure, if the noise variance is three of its standard deviations above its estimate. Negative if its
+  /// transfer is higher, 0 if it cannot be simulated.
   [[nodiscard]] double less_with(const sim::plant::PlantUnderTest& tested) const;
   /// Returns chi2 over all events due to the reference structure's noise transfer.
   [[nodiscard]] double own() const { return own_; }
@@ -28,6 +29,7 @@ class NoiseTransfer {
   EventNoise noise_;  ///< noise with which quiet_ and noisy_ are whitened
   double times_ = 0;  ///< number of values in all events over the number in the simulated minute
   double own_ = 0;
+  double scale_ = 1;  ///< largest noise variance that `voltage` allows, relative to its estimate
 };
 
 }  // namespace swingbank::validate::noise

@@ -42,6 +42,12 @@ TEST_F(NoiseTransferTest, DelayOfAWholeSampleKeepsTransfer) {
   // Apart from the correlation between V and current of the same sample.
   EXPECT_NEAR(less_with(late(1.0)) / noise_transfer_.own(), 0.0, 0.02);
 }
+TEST_F(NoiseTransferTest, AllowsForAnUncertainNoiseVariance) {
+  const VoltageNoise uncertain{.variance = {4e-8, 4e-8, 0}, .doubt = {0.05, 0.1, 9}};
+  const NoiseTransfer noise_transfer(example_.model.under_test(), example_.events, uncertain);
+  EXPECT_NEAR(noise_transfer.less_with({late(0.5), example_.model.conventions}), 1.3 * less_with(late(0.5)),
+              1e-9 * noise_transfer_.own());
+}
 TEST_F(NoiseTransferTest, LargerReactanceReducesTransfer) {
   EXPECT_GT(less_with(with_reactance(1.1)), 0.05 * noise_transfer_.own());
 }
