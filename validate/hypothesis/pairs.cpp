@@ -45,8 +45,17 @@ Judgement begun(const BaseModel& then, Hypothesis h, const fit::Fit& from) {
 }  // namespace
 
 BaseModel after(const BaseModel& base_model, const Judgement& j) {
-  return {base_model.events, j.hypothesis.plant,      j.hypothesis.conventions, base_model.library, j.fit,
-          j.hypothesis.free, full_name(j.hypothesis), base_model.prior_sd,      base_model.threads};
+  return {.events = base_model.events,
+          .plant = j.hypothesis.plant,
+          .conventions = j.hypothesis.conventions,
+          .library = base_model.library,
+          .fit = j.fit,
+          .own = j.hypothesis.free,
+          .with = full_name(j.hypothesis),
+          .prior_sd = base_model.prior_sd,
+          .threads = base_model.threads,
+          .stop = base_model.stop,
+          .reached = base_model.reached};
 }
 
 void bring(const BaseModel& base_model, Hypothesis& h) {

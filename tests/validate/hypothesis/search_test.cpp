@@ -98,6 +98,14 @@ class Exchange : public ::testing::Test {
                               .fit = base_};
 };
 
+TEST_F(Exchange, StopsAmongSecondEffectsToo) {
+  BaseModel base_model = base_model_;
+  base_model.stop = [] { return true; };
+  const Judgement first = alone("TGOV1", 0.06);
+  const BaseModel then = after(base_model, first);
+  for (const Judgement& j : try_hypotheses(then, then.hypotheses())) EXPECT_FALSE(j.fitted);
+}
+
 TEST_F(Exchange, KeepsTheFittedSecondEffectBesideTheSlotsCompetitors) {
   const Judgement pair = beside(alone("TGOV1", 0.06), "STEPUP", 0.07);
   const auto competitors = exchanges(base_model_, pair, {});

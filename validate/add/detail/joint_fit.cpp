@@ -77,7 +77,7 @@ void JointFit::search() {
                         "they cannot be added together with the other effects", "add fewer effects"});
     added.push_back(best(bases.back(), std::move(all)));
     std::erase(left, added.back().hypothesis.name);
-    bases.push_back(after(bases.back(), added.back()));
+    bases.push_back(hypothesis::after(bases.back(), added.back()));
   }
   a_.hypothesis = added.back().hypothesis;
   a_.with = finished(added.back());
@@ -104,7 +104,7 @@ void JointFit::leave_out() {
       throw InputError({"the model without " + names_[i] + " cannot be fitted", "swingbank add",
                         without.fit.failed, "add the other effects without " + names_[i]});
     a_.with = from_other(a_.hypothesis, a_.with, without.fit);
-    const hypothesis::BaseModel base = after(base_model_, without);
+    const hypothesis::BaseModel base = hypothesis::after(base_model_, without);
     for (const hypothesis::Judgement& j : judgements(base, addable(base.under_test(), {names_[i]})))
       if (j.fitted && j.hypothesis.free.size() == a_.hypothesis.free.size())
         a_.with = from_other(a_.hypothesis, a_.with, j.fit);
@@ -192,14 +192,6 @@ hypothesis::Hypothesis JointFit::together(std::vector<std::string> names) const 
     std::erase(names, all.hypothesis.name);
   }
   return all.hypothesis;
-}
-
-hypothesis::BaseModel JointFit::after(const hypothesis::BaseModel& base,
-                                      const hypothesis::Judgement& j) const {
-  hypothesis::BaseModel next = hypothesis::after(base, j);
-  next.stop = base_model_.stop;
-  next.reached = base_model_.reached;
-  return next;
 }
 
 /// Returns the better of the fit `f` of `h` and a refit of `h` from the end of another structure's fit. The

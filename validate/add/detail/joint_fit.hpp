@@ -43,8 +43,6 @@ class JointFit {
   [[nodiscard]] std::vector<hypothesis::Hypothesis> addable(const sim::plant::PlantUnderTest& tested,
                                                             const std::vector<std::string>& names) const;
   [[nodiscard]] hypothesis::Hypothesis together(std::vector<std::string> names) const;
-  [[nodiscard]] hypothesis::BaseModel after(const hypothesis::BaseModel& base,
-                                            const hypothesis::Judgement& j) const;
   [[nodiscard]] fit::Fit from_other(const hypothesis::Hypothesis& h, const fit::Fit& f,
                                     const fit::Fit& other) const;
   [[nodiscard]] fit::Fit finished(const hypothesis::Judgement& j) const;
